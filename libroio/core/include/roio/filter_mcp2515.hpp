@@ -1,0 +1,253 @@
+/// Fits a filter program to the MCP2515's acceptance hardware: two masks and six filters.
+///
+///   receive buffer   mask    filters
+///   RXB0             RXM0    RXF0 RXF1
+///   RXB1             RXM1    RXF2 RXF3 RXF4 RXF5
+///
+/// A filter accepts the identifiers that equal it in every bit that its buffer's mask has set.
+/// Filters cannot be switched off, so an unused one repeats a used one. A frame that RXB0 accepts
+/// may roll over into RXB1 whatever RXB1's filters say; so what fits in RXB0's filters has two
+/// buffers to itself. Source: MCP2515 datasheet DS20001801, 4.5 "Message Acceptance Filters and
+/// Masks", registers RXFnSIDH..RXMnEID0.
+#ifndef ROIO_FILTER_MCP2515_HPP
+#define ROIO_FILTER_MCP2515_HPP
+
+#include <stdint.h>
+
+#include <roio/filter.hpp>
+
+namespace roio {
+
+/// The register image, ready to be written: each filter or mask as SIDH, SIDL, EID8, EID0.
+struct Mcp2515Filters {
+  static constexpr uint8_t mask_count = 2;
+  static constexpr uint8_t filter_count = 6;
+  static constexpr uint8_t exide = 0x08;  ///< In a filter's SIDL: extended identifiers only.
+
+  uint8_t mask[mask_count][4];
+  uint8_t filter[filter_count][4];
+  bool exact;  ///< False: the chip lets through more than the program, and software must check.
+
+  static constexpr uint8_t mask_of(uint8_t filter) { return filter < 2 ? 0 : 1; }
+};
+
+/// The 29 bits of an identifier (or mask) as the chip keeps them, EXIDE clear:
+///   SIDH 7..0 = id 28..21 | SIDL 7..5 = id 20..18, 1..0 = id 17..16 | EID8 = id 15..8 | EID0 =
+///   id 7..0
+inline void to_mcp2515_registers(uint32_t id, uint8_t registers[4]) {
+  registers[0] = static_cast<uint8_t>(id >> 21);
+  registers[1] = static_cast<uint8_t>(((id >> 13) & 0xE0U) | ((id >> 16) & 0x03U));
+  registers[2] = static_cast<uint8_t>(id >> 8);
+  registers[3] = static_cast<uint8_t>(id);
+}
+
+/// The inverse of to_mcp2515_registers(); other bits of SIDL are ignored.
+inline uint32_t from_mcp2515_registers(const uint8_t registers[4]) {
+  return (static_cast<uint32_t>(registers[0]) << 21) |
+         (static_cast<uint32_t>(registers[1] & 0xE0U) << 13) |
+         (static_cast<uint32_t>(registers[1] & 0x03U) << 16) |
+         (static_cast<uint32_t>(registers[2]) << 8) | registers[3];
+}
+
+/// Whether the chip, so set, accepts an extended frame with this identifier.
+inline bool accepts(const Mcp2515Filters& image, uint32_t id) {
+  for (uint8_t f = 0; f < Mcp2515Filters::filter_count; ++f) {
+    const uint32_t mask = from_mcp2515_registers(image.mask[Mcp2515Filters::mask_of(f)]);
+    if (((id ^ from_mcp2515_registers(image.filter[f])) & mask) == 0) {
+      return true;
+    }
+  }
+  return false;
+}
+
+namespace detail {
+
+/// Whether the rules accept every identifier that `cube` accepts. Splits the cube along a bit that
+/// a rule cares about and the cube does not; the depth is at most the 29 bits.
+inline bool covered(const FilterRule& cube, const FilterRule* rules, const FilterRule* end) {
+  for (; rules != end; ++rules) {
+    if (contains(*rules, cube)) {
+      return true;
+    }
+    if (overlaps(*rules, cube)) {
+      const uint32_t open = rules->mask & ~cube.mask;
+      const uint32_t bit = open & (~open + 1U);
+      return covered(FilterRule{cube.match, cube.mask | bit, cube.meaning}, rules, end) &&
+             covered(FilterRule{cube.match | bit, cube.mask | bit, cube.meaning}, rules, end);
+    }
+  }
+  return false;
+}
+
+/// Searches the way to share out the rules among the six filters that lets the fewest identifiers
+/// through, counted filter by filter. Exhaustive with pruning over at most max_rules rules.
+class Mcp2515Search {
+ public:
+  static constexpr uint8_t max_rules = 8;
+
+  Mcp2515Search(const FilterRule* rules, uint8_t count)
+      : rules_(rules), count_(count), best_cost_(UINT32_MAX), used_(), match_(), slot_(), best_() {
+    const uint32_t masks[2] = {id_mask, id_mask};
+    place(0, masks);
+  }
+
+  /// Which filter 0..5 the best way found puts a rule in.
+  uint8_t filter_of(uint8_t rule) const { return best_[rule]; }
+
+ private:
+  static uint8_t first_filter(uint8_t buffer) { return buffer == 0 ? 0 : 2; }
+  static uint8_t room(uint8_t buffer) { return buffer == 0 ? 2 : 4; }
+
+  static uint32_t accepted_by(uint32_t mask) {
+    uint32_t ids = 1;
+    for (uint32_t open = ~mask & id_mask; open != 0; open &= open - 1U) {
+      ids <<= 1;
+    }
+    return ids;
+  }
+
+  // At most 6 * 2^29 identifiers: fits in 32 bits.
+  uint32_t cost(const uint32_t masks[2]) const {
+    return used_[0] * accepted_by(masks[0]) + used_[1] * accepted_by(masks[1]);
+  }
+
+  // A placement only ever widens masks or takes another filter, so its cost bounds all that follow.
+  void place(uint8_t rule, const uint32_t masks[2]) {
+    if (cost(masks) >= best_cost_) {
+      return;
+    }
+    if (rule == count_) {
+      best_cost_ = cost(masks);
+      for (uint8_t i = 0; i < count_; ++i) {
+        best_[i] = slot_[i];
+      }
+      return;
+    }
+    for (uint8_t buffer = 0; buffer < 2; ++buffer) {
+      for (uint8_t i = 0; i < used_[buffer]; ++i) {
+        share(rule, masks, buffer, static_cast<uint8_t>(first_filter(buffer) + i));
+      }
+      if (used_[buffer] < room(buffer)) {
+        const uint8_t filter = static_cast<uint8_t>(first_filter(buffer) + used_[buffer]);
+        match_[filter] = rules_[rule].match;
+        ++used_[buffer];
+        share(rule, masks, buffer, filter);
+        --used_[buffer];
+      }
+    }
+  }
+
+  // Rules in one filter: the mask loses the bits in which they differ.
+  void share(uint8_t rule, const uint32_t masks[2], uint8_t buffer, uint8_t filter) {
+    uint32_t next[2] = {masks[0], masks[1]};
+    next[buffer] &= rules_[rule].mask & ~(match_[filter] ^ rules_[rule].match);
+    slot_[rule] = filter;
+    place(static_cast<uint8_t>(rule + 1U), next);
+  }
+
+  const FilterRule* rules_;
+  uint8_t count_;
+  uint32_t best_cost_;
+  uint8_t used_[2];
+  uint32_t match_[Mcp2515Filters::filter_count];
+  uint8_t slot_[max_rules];
+  uint8_t best_[max_rules];
+};
+
+/// The tightest single rule that contains both.
+inline FilterRule hull(const FilterRule& a, const FilterRule& b) {
+  const uint32_t mask = a.mask & b.mask & ~(a.match ^ b.match);
+  return FilterRule{a.match & mask, mask, FilterMeaning::custom};
+}
+
+inline uint8_t open_bits(const FilterRule& rule) {
+  uint8_t bits = 0;
+  for (uint32_t open = ~rule.mask & id_mask; open != 0; open &= open - 1U) {
+    ++bits;
+  }
+  return bits;
+}
+
+/// Joins the two rules whose hull is smallest, until `limit` are left.
+inline uint8_t shorten(FilterRule* rules, uint8_t count, uint8_t limit) {
+  while (count > limit) {
+    uint8_t first = 0;
+    uint8_t second = 1;
+    for (uint8_t i = 0; i < count; ++i) {
+      for (uint8_t j = static_cast<uint8_t>(i + 1U); j < count; ++j) {
+        if (open_bits(hull(rules[i], rules[j])) < open_bits(hull(rules[first], rules[second]))) {
+          first = i;
+          second = j;
+        }
+      }
+    }
+    rules[first] = hull(rules[first], rules[second]);
+    rules[second] = rules[--count];
+  }
+  return count;
+}
+
+/// An identifier that no node sends (reserved class, source 255): what a chip that is to receive
+/// nothing listens for.
+constexpr FilterRule nobody() {
+  return FilterRule{ClassField::mask() | SourceNodeField::mask(), id_mask, FilterMeaning::custom};
+}
+
+}  // namespace detail
+
+/// Fits a program to the chip. Never rejects what the program accepts; where six filters behind two
+/// masks cannot say it exactly, lets through as little more as can be: the smallest sum over the
+/// filters, each rule whole in one filter, for up to 8 rules; a longer program has its closest
+/// rules joined first. An empty program accepts one identifier that nobody sends (the chip cannot
+/// accept none). Cost: with rules that fit, a few hundred steps; at worst (8 that do not) some ten
+/// thousand. Recursive, about 400 bytes of stack on AVR. No heap.
+template <uint8_t Capacity>
+Mcp2515Filters fit_mcp2515(const FilterProgram<Capacity>& program) {
+  FilterRule rules[Capacity == 0 ? 1 : Capacity];
+  uint8_t count = 0;
+  for (const FilterRule& rule : program) {
+    rules[count++] = rule;
+  }
+  if (count == 0) {
+    rules[count++] = detail::nobody();
+  }
+  count = detail::shorten(rules, count, detail::Mcp2515Search::max_rules);
+  const detail::Mcp2515Search search(rules, count);
+
+  FilterRule slots[Mcp2515Filters::filter_count];
+  bool used[Mcp2515Filters::filter_count] = {};
+  for (uint8_t i = 0; i < count; ++i) {
+    const uint8_t f = search.filter_of(i);
+    slots[f] = used[f] ? detail::hull(slots[f], rules[i]) : rules[i];
+    used[f] = true;
+  }
+  uint32_t masks[Mcp2515Filters::mask_count] = {id_mask, id_mask};
+  for (uint8_t f = 0; f < Mcp2515Filters::filter_count; ++f) {
+    if (used[f]) {
+      masks[Mcp2515Filters::mask_of(f)] &= slots[f].mask;
+    }
+  }
+  if (!used[2]) {
+    masks[1] = masks[0];
+  }
+
+  Mcp2515Filters image;
+  image.exact = true;
+  for (uint8_t m = 0; m < Mcp2515Filters::mask_count; ++m) {
+    to_mcp2515_registers(masks[m], image.mask[m]);
+  }
+  for (uint8_t f = 0; f < Mcp2515Filters::filter_count; ++f) {
+    // RXB0's first filter is always used; RXB1's first, when any of RXB1's is.
+    const uint8_t source = used[f] ? f : f >= 2 && used[2] ? uint8_t{2} : uint8_t{0};
+    const uint32_t mask = masks[Mcp2515Filters::mask_of(f)];
+    const FilterRule accepted = {slots[source].match & mask, mask, FilterMeaning::custom};
+    to_mcp2515_registers(accepted.match, image.filter[f]);
+    image.filter[f][1] |= Mcp2515Filters::exide;
+    image.exact = image.exact && detail::covered(accepted, program.begin(), program.end());
+  }
+  return image;
+}
+
+}  // namespace roio
+
+#endif

@@ -1,0 +1,40 @@
+/// Status: what a call of the core or of the firmware came to. Where a caller cannot be told (an
+/// interrupt, a frame nobody asked for), a counter takes its place.
+#ifndef ROIO_STATUS_HPP
+#define ROIO_STATUS_HPP
+
+#include <stdint.h>
+
+/// Marks a function whose result must be looked at; the same for C++11 on AVR and C++20 on the
+/// host.
+#if defined(__cplusplus) && __cplusplus >= 201703L
+#define ROIO_NODISCARD [[nodiscard]]
+#elif defined(__GNUC__)
+#define ROIO_NODISCARD __attribute__((warn_unused_result))
+#else
+#define ROIO_NODISCARD
+#endif
+
+namespace roio {
+
+enum class Status : uint8_t {
+  ok = 0,
+  bad_argument,   ///< A field is outside its range; nothing was done.
+  full,           ///< No room left; nothing was stored. Try again later, or with more room.
+  not_roio,       ///< Not an extended data frame, so never a Roio message.
+  unknown_class,  ///< A Roio frame of a class that this version does not know.
+};
+
+/// A short lower-case phrase, for logs and messages; never null.
+constexpr const char* to_string(Status status) {
+  return status == Status::ok              ? "ok"
+         : status == Status::bad_argument  ? "bad argument"
+         : status == Status::full          ? "full"
+         : status == Status::not_roio      ? "not a Roio frame"
+         : status == Status::unknown_class ? "unknown class"
+                                           : "unknown status";
+}
+
+}  // namespace roio
+
+#endif

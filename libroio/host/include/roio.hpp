@@ -1,0 +1,16 @@
+/// Roio for host programs: everything but JSON (roio/json.hpp, target roio::json).
+#ifndef ROIO_HPP
+#define ROIO_HPP
+
+#include <roio/bus.hpp>
+#include <roio/candump_log.hpp>
+#include <roio/error.hpp>
+#include <roio/filter_mcp2515.hpp>
+#include <roio/filter_socketcan.hpp>
+#include <roio/frame_length.hpp>
+#include <roio/message.hpp>
+#include <roio/node.hpp>
+#include <roio/text.hpp>
+#include <roio/version.hpp>
+
+#endif

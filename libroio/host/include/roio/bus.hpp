@@ -1,0 +1,155 @@
+/// Bus: one CAN bus seen from a Linux program, whatever carries it.
+///
+///   auto bus = roio::open("can0");                       // SocketCAN
+///   auto bus = roio::open("local:robot?bitrate=500000"); // processes of one machine, no kernel
+///   CAN
+///
+/// Threads: one thread may send while another receives, and any thread may call cancel(), close(),
+/// state() and statistics(). Two threads must not receive (or send) at the same time.
+/// Errors: what should not happen throws std::system_error (error.hpp); a timeout, a cancelled wait
+/// and a closed bus are values.
+#ifndef ROIO_BUS_HPP
+#define ROIO_BUS_HPP
+
+#include <chrono>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+
+#include <roio/filter_socketcan.hpp>
+#include <roio/frame.hpp>
+
+namespace roio {
+
+/// How long a call may wait. Zero: not at all. Negative counts as zero.
+using Timeout = std::chrono::nanoseconds;
+inline constexpr Timeout no_wait{0};
+inline constexpr Timeout forever = Timeout::max();
+
+/// Wall-clock time, as the kernel or the hub stamped it.
+using Timestamp = std::chrono::sys_time<std::chrono::nanoseconds>;
+
+enum class Result : std::uint8_t {
+  ok,
+  timeout,    ///< The deadline passed first; nothing was lost by it.
+  cancelled,  ///< cancel() was called, before or during the wait.
+  closed,     ///< close() was called, before or during the wait.
+};
+const char* to_string(Result result) noexcept;
+
+/// How many of the frames offered went through, and why not more.
+struct [[nodiscard]] Transfer {
+  Result result;      ///< ok exactly when count > 0 on receive, when all went on send.
+  std::size_t count;  ///< The first `count` frames went through, whatever result says.
+};
+
+struct Received {
+  Frame frame;
+  Timestamp time;  ///< When the frame was on the bus, by the kernel's or the hub's clock.
+  std::uint64_t lost_before;  ///< Frames lost to this receiver between the one before and this one.
+};
+
+/// The controller's fault confinement (ISO 11898-1), and what can be wrong around it.
+enum class BusState : std::uint8_t {
+  active,   ///< Error-active, the normal state.
+  warning,  ///< An error counter above 96.
+  passive,  ///< Error-passive: a counter above 127.
+  bus_off,  ///< Bus-off: the controller takes no part until it is restarted.
+  down,     ///< The interface is administratively down.
+  absent,   ///< The interface or the hub is gone; it is looked for at every call.
+};
+const char* to_string(BusState state) noexcept;
+
+/// Counted since open(). Every frame offered or due is in one of these.
+struct Statistics {
+  std::uint64_t sent = 0;        ///< Frames handed to the bus.
+  std::uint64_t received = 0;    ///< Frames that passed the filters and were returned.
+  std::uint64_t dropped = 0;     ///< Frames that passed the filters and were lost to this receiver.
+  std::uint64_t send_waits = 0;  ///< Times a transmit queue was full and send() waited.
+  std::uint64_t send_timeouts = 0;  ///< send() calls that gave up at their deadline.
+  std::uint64_t error_frames = 0;   ///< Error reports of the controller.
+  std::uint64_t bus_offs = 0;       ///< Times the controller went bus-off.
+  std::uint64_t outages = 0;        ///< Times the interface went down or the hub went away.
+  std::uint64_t resent = 0;         ///< Frames sent again to a new hub (local bus).
+  std::uint64_t duplicates = 0;  ///< Frames come a second time over a new hub, not delivered again.
+  std::uint64_t unsent = 0;      ///< Frames accepted by send() and lost on close() or with a hub.
+};
+
+struct OpenOptions {
+  /// Also return the controller's error reports (FrameKind::error) from receive(). They are decoded
+  /// into state() and statistics() either way.
+  bool error_frames = false;
+  /// Receive nothing until set_filters(): for programs that only send.
+  bool send_only = false;
+  /// How long open() may wait for the bus (a hub that is just starting or leaving).
+  Timeout open_timeout = std::chrono::seconds(5);
+};
+
+class Bus {
+ public:
+  Bus() = default;
+  Bus(const Bus&) = delete;
+  Bus& operator=(const Bus&) = delete;
+  virtual ~Bus() = default;
+
+  /// Sends frames in order; waits while a queue is full or the interface is down, to the deadline.
+  /// Order among frames of one priority is kept; where the backend arbitrates, urgent ones (bit 28
+  /// of an extended identifier 0) pass normal ones that still wait. A sender does not receive its
+  /// own frames.
+  /// @param frames each is_valid() and not an error report, else throws Errc::bad_frame naming it
+  /// and
+  ///        nothing is sent.
+  /// @return ok when all went; otherwise the first `count` went.
+  virtual Transfer send(std::span<const Frame> frames, Timeout timeout) = 0;
+
+  /// Takes up to frames.size() frames that have come in, in the order in which they were on the
+  /// bus. Waits for the first only. An empty span returns timeout at once.
+  virtual Transfer receive(std::span<Received> frames, Timeout timeout) = 0;
+
+  [[nodiscard]] Result send(const Frame& frame, Timeout timeout = std::chrono::seconds(1)) {
+    return send(std::span(&frame, 1), timeout).result;
+  }
+  [[nodiscard]] Result receive(Received& frame, Timeout timeout) {
+    return receive(std::span(&frame, 1), timeout).result;
+  }
+
+  /// Receives from now on what any of these accepts; an empty list receives nothing. At first, all
+  /// frames of all kinds are received (none with OpenOptions::send_only). Error reports are not
+  /// subject to filters. Frames already queued by the old filters may still come.
+  /// @throws Errc::too_many_filters: more than 512; the filters stay as they were.
+  virtual void set_filters(std::span<const SocketCanFilter> filters) = 0;
+
+  /// A file descriptor that poll() reports readable when receive() may have something; it stays the
+  /// same for the life of the object. After it was readable, call receive() until it returns
+  /// timeout. Owned by the bus: do not read, write or close it.
+  [[nodiscard]] virtual int fd() const noexcept = 0;
+
+  [[nodiscard]] virtual BusState state() const = 0;
+  [[nodiscard]] virtual Statistics statistics() const = 0;
+
+  /// Makes the waits of now and later return cancelled until resume(). May be called from a signal
+  /// handler. A receive() that finds frames waiting, and a send() that finds room, still take them.
+  virtual void cancel() noexcept = 0;
+  virtual void resume() noexcept = 0;
+
+  /// Ends the bus: hands over what send() has accepted (within a second), lets waiting calls return
+  /// closed. Later calls return closed at once. Done by the destructor too; no call may be running
+  /// then.
+  virtual void close() noexcept = 0;
+
+  /// What open() was given, without options: "can0", "local:robot".
+  [[nodiscard]] virtual const std::string& name() const noexcept = 0;
+};
+
+/// Opens a bus.
+/// @param url "can0" or "socketcan:can0"; "local:NAME" or "local:NAME?bitrate=BPS", NAME of 1..64
+///        letters, digits, '.', '_', '-', BPS 1000..1000000 (none: as fast as it goes).
+/// @throws std::system_error with an Errc that says what is wrong with it and what was expected.
+std::unique_ptr<Bus> open(std::string_view url, const OpenOptions& options = {});
+
+}  // namespace roio
+
+#endif

@@ -1,0 +1,35 @@
+/// What the host library throws: std::system_error, with these codes or the system's own.
+/// what() is one line, "<what it is about>: <what is wrong and what was expected>".
+#ifndef ROIO_ERROR_HPP
+#define ROIO_ERROR_HPP
+
+#include <system_error>
+
+namespace roio {
+
+enum class Errc {
+  bad_url = 1,          ///< The text names no bus.
+  no_such_interface,    ///< No network interface of that name.
+  not_a_can_interface,  ///< The interface exists and is not CAN.
+  no_can_support,       ///< The kernel has no CAN; a local bus needs none.
+  not_supported,        ///< This build has no such kind of bus.
+  bitrate_mismatch,     ///< The local bus already runs at another bit rate.
+  version_mismatch,     ///< The local bus is run by another, incompatible version.
+  not_permitted,        ///< The local bus belongs to another user.
+  too_many_filters,     ///< More filters than the backend takes.
+  bad_frame,            ///< A frame that no bus carries: id, length or kind out of range.
+  not_connected,        ///< The local bus could not be reached or taken over in time.
+};
+
+const std::error_category& error_category() noexcept;
+
+inline std::error_code make_error_code(Errc code) noexcept {
+  return {static_cast<int>(code), error_category()};
+}
+
+}  // namespace roio
+
+template <>
+struct std::is_error_code_enum<roio::Errc> : std::true_type {};
+
+#endif

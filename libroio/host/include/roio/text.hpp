@@ -1,0 +1,79 @@
+/// The textual forms that people type and read: addresses, data bytes, bus names. Pure functions.
+#ifndef ROIO_TEXT_HPP
+#define ROIO_TEXT_HPP
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <variant>
+
+#include <roio/frame.hpp>
+#include <roio/header.hpp>
+
+namespace roio {
+
+/// Why a text was refused: one line that says what was expected and what was there.
+struct ParseError {
+  std::string message;
+  std::size_t offset = 0;  ///< In bytes from the start of the text, where it went wrong.
+};
+
+/// A value, or why there is none.
+template <typename T>
+class [[nodiscard]] Parsed {
+ public:
+  Parsed(T value) : content_(std::move(value)) {}
+  Parsed(ParseError error) : content_(std::move(error)) {}
+
+  [[nodiscard]] bool ok() const noexcept { return std::holds_alternative<T>(content_); }
+  explicit operator bool() const noexcept { return ok(); }
+  [[nodiscard]] const T& value() const { return std::get<T>(content_); }
+  const T& operator*() const { return value(); }
+  const T* operator->() const { return &value(); }
+  [[nodiscard]] const ParseError& error() const { return std::get<ParseError>(content_); }
+
+ private:
+  std::variant<T, ParseError> content_;
+};
+
+/// Up to 8 data bytes.
+struct Bytes {
+  std::array<std::uint8_t, max_data_length> data{};
+  std::uint8_t length = 0;
+};
+
+/// "SUBNET.NODE": "0.2", "31.254"; "0.*" and "0.255" are the broadcast address of subnet 0.
+Parsed<Address> parse_address(std::string_view text);
+/// The same, without the broadcast address: what a node may call itself.
+Parsed<Address> parse_source(std::string_view text);
+/// "0.2", or "0.*" for a broadcast.
+std::string to_string(Address address);
+
+/// Data bytes in hexadecimal as cansend takes them, two digits each, dots allowed between bytes:
+/// "5A2D00", "5A.2D.00". Empty text is no data.
+Parsed<Bytes> parse_hex(std::string_view text);
+/// Upper-case digits, no separator.
+std::string to_hex(const std::uint8_t* data, std::size_t length);
+
+/// "urgent" and "normal"; "message", "system", "stream" and "reserved".
+const char* to_string(Priority priority) noexcept;
+const char* to_string(MessageClass message_class) noexcept;
+Parsed<Priority> parse_priority(std::string_view text);
+Parsed<MessageClass> parse_class(std::string_view text);
+
+/// What open() takes.
+struct BusUrl {
+  enum class Kind : std::uint8_t { socketcan, local, serial };
+  Kind kind = Kind::socketcan;
+  std::string target;                    ///< Interface, bus name or device.
+  std::optional<std::uint32_t> bitrate;  ///< Of a local bus, bit/s, 1,000..1,000,000.
+};
+Parsed<BusUrl> parse_bus_url(std::string_view text);
+
+}  // namespace roio
+
+#endif

@@ -1,0 +1,95 @@
+#include "deadline.hpp"
+
+#include <algorithm>
+#include <roio/node.hpp>
+#include <roio/text.hpp>
+#include <stdexcept>
+#include <utility>
+#include <vector>
+
+namespace roio {
+
+Node::Node(std::unique_ptr<Bus> bus, Address own) : Node(std::move(bus), interest_of(own)) {}
+
+Node::Node(std::unique_ptr<Bus> bus, const Interest& interest)
+    : bus_(std::move(bus)), interest_(interest), batch_() {
+  if (!bus_) {
+    throw std::invalid_argument("Node: no bus given");
+  }
+  if (compile(interest_, program_) != Status::ok) {
+    throw std::invalid_argument("Node: own address " + to_string(interest_.own) +
+                                " is out of range; expected subnet 0..31 and node 0..254");
+  }
+  std::vector<SocketCanFilter> filters(program_.size());
+  std::transform(program_.begin(), program_.end(), filters.begin(), to_socketcan);
+  bus_->set_filters(filters);
+}
+
+Result Node::send(Address destination, std::span<const std::uint8_t> data, Priority priority,
+                  Timeout timeout) {
+  if (data.size() > max_data_length) {
+    throw std::invalid_argument("Node::send: " + std::to_string(data.size()) +
+                                " bytes; a message carries at most 8");
+  }
+  Message message{};
+  message.header = Header{priority, MessageClass::message, destination, interest_.own};
+  message.length = static_cast<std::uint8_t>(data.size());
+  std::copy(data.begin(), data.end(), message.data);
+  return send(message, timeout);
+}
+
+Result Node::send(const Message& message, Timeout timeout) {
+  Message own = message;
+  own.header.source = interest_.own;
+  Frame frame{};
+  if (to_frame(own, frame) != Status::ok) {
+    throw std::invalid_argument(
+        "Node::send: header out of range; expected destination subnet 0..31, class message, system "
+        "or "
+        "stream, at most 8 bytes");
+  }
+  return bus_->send(frame, timeout);
+}
+
+Result Node::receive(ReceivedMessage& message, Timeout timeout) {
+  const Deadline deadline(timeout);
+  for (;;) {
+    while (next_ < end_) {
+      if (take(batch_[next_++], message)) {
+        return Result::ok;
+      }
+    }
+    const Transfer transfer = bus_->receive(batch_, deadline.remaining());
+    if (transfer.result != Result::ok) {
+      return transfer.result;
+    }
+    next_ = 0;
+    end_ = transfer.count;
+  }
+}
+
+bool Node::take(const Received& received, ReceivedMessage& message) {
+  lost_before_ += received.lost_before;
+  switch (to_message(received.frame, message.message)) {
+    case Status::ok:
+      break;
+    case Status::not_roio:
+      ++counters_.foreign;
+      return false;
+    case Status::unknown_class:
+      ++counters_.unknown_class;
+      return false;
+    default:
+      ++counters_.invalid_source;
+      return false;
+  }
+  if (!program_.accepts(received.frame.id)) {
+    ++counters_.not_wanted;
+    return false;
+  }
+  message.time = received.time;
+  message.lost_before = std::exchange(lost_before_, 0);
+  return true;
+}
+
+}  // namespace roio
