@@ -1,0 +1,424 @@
+#include <poll.h>
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <condition_variable>
+#include <deque>
+#include <mutex>
+#include <roio/error.hpp>
+#include <thread>
+#include <utility>
+#include <vector>
+
+#include "backends.hpp"
+#include "frame_check.hpp"
+#include "local_connection.hpp"
+#include "local_senders.hpp"
+#include "local_thread.hpp"
+
+namespace roio {
+namespace local {
+namespace {
+
+constexpr std::chrono::seconds close_time{1};
+// Consumed frames are reported in lots, for it is a system call here and one in the hub.
+constexpr std::uint64_t consumed_lot = 512;
+constexpr std::chrono::milliseconds retry_interval{200};
+
+/// The client of a local bus. A thread of its own reads, so that frames, and a hub to be replaced,
+/// do not wait for the program to call.
+class LocalBus final : public Bus {
+ public:
+  LocalBus(const std::string& bus_name, std::optional<std::uint32_t> bitrate_bps,
+           const OpenOptions& options)
+      : name_("local:" + bus_name), connector_(bus_name, bitrate_bps) {
+    if (!options.send_only) {
+      filters_ = {SocketCanFilter{0, 0}};
+    }
+    auto connection = connector_.connect(Deadline(options.open_timeout), stop_);
+    if (!connection) {
+      throw std::system_error(Errc::not_connected, name_);
+    }
+    adopt(std::move(*connection));
+    thread_ = start_thread([this] { run(); });
+  }
+
+  ~LocalBus() override { close(); }
+
+  using Bus::receive;
+  using Bus::send;
+  Transfer send(std::span<const Frame> frames, Timeout timeout) override;
+  Transfer receive(std::span<Received> frames, Timeout timeout) override;
+  void set_filters(std::span<const SocketCanFilter> filters) override;
+  [[nodiscard]] int fd() const noexcept override { return readable_.fd(); }
+  [[nodiscard]] BusState state() const override;
+  [[nodiscard]] Statistics statistics() const override;
+  void cancel() noexcept override;
+  void resume() noexcept override;
+  void close() noexcept override;
+  [[nodiscard]] const std::string& name() const noexcept override { return name_; }
+
+ private:
+  // The caller holds mutex_ for these.
+  std::size_t offer(std::span<const Frame> frames);
+  std::size_t take(std::span<Received> frames);
+  void report_consumed();
+  void flush();
+  void adopt(Connection connection);
+  void disconnect();
+  bool read();
+  bool handle(const Record& record);
+  bool take_delivery(const Deliver& deliver);
+  void take_done(const Done& done);
+  [[nodiscard]] std::size_t unacknowledged() const { return sent_[0].size() + sent_[1].size(); }
+
+  // The reading thread.
+  void run();
+  void serve();
+  void reconnect();
+  [[nodiscard]] bool wants_to_write() const;
+
+  void wait(const EventFlag& flag, const Deadline& deadline) const;
+
+  std::string name_;
+  Connector connector_;  // by the constructor, then by the reading thread, then by close()
+  EventFlag readable_;   // frames are queued
+  EventFlag sendable_;   // room may have come since send() found none
+  EventFlag cancel_;
+  EventFlag closed_flag_;
+  EventFlag stop_;
+  EventFlag wake_;  // the reading thread has bytes to send, too
+  std::atomic<bool> cancelled_{false};
+  std::atomic<bool> closed_{false};
+
+  mutable std::mutex mutex_;
+  std::condition_variable all_done_;
+  std::optional<Connection> connection_;
+  std::vector<SocketCanFilter> filters_;
+  std::array<std::deque<OfferedFrame>, lane_count> sent_;  // not reported done yet
+  std::array<std::uint64_t, lane_count> sequence_{};
+  std::deque<Received> queue_;
+  std::size_t queued_before_ = 0;  // of queue_, from hubs before this one
+  Senders senders_;
+  Statistics statistics_;
+  std::uint64_t index_ = 0;      // of the delivery had last from this hub
+  std::uint64_t announced_ = 0;  // losses seen as gaps in that
+  std::uint64_t lost_ = 0;       // not yet told with a frame
+  std::uint64_t consumed_ = 0;
+  std::uint64_t reported_ = 0;  // of consumed_, to this hub
+  std::thread thread_;
+};
+
+Transfer LocalBus::send(std::span<const Frame> frames, Timeout timeout) {
+  check_sendable(frames);
+  const Deadline deadline(timeout);
+  std::size_t count = 0;
+  for (;;) {
+    {
+      const std::lock_guard lock(mutex_);
+      if (closed_) {
+        return {Result::closed, count};
+      }
+      count += offer(frames.subspan(count));
+      if (count == frames.size()) {
+        return {Result::ok, count};
+      }
+      if (cancelled_) {
+        return {Result::cancelled, count};
+      }
+      if (deadline.passed()) {
+        ++statistics_.send_timeouts;
+        return {Result::timeout, count};
+      }
+      ++statistics_.send_waits;
+      sendable_.clear();
+    }
+    wait(sendable_, deadline);
+  }
+}
+
+// As many as fit in their lanes' windows, up to the first that does not.
+std::size_t LocalBus::offer(std::span<const Frame> frames) {
+  if (!connection_) {
+    return 0;
+  }
+  Stream& stream = connection_->stream;
+  std::size_t count = 0;
+  for (const Frame& frame : frames) {
+    const std::size_t lane = lane_of(frame);
+    if (sent_.at(lane).size() >= connection_->welcome.window) {
+      break;
+    }
+    sent_.at(lane).push_back({++sequence_.at(lane), to_wire(frame)});
+    append_record(stream.out(), sent_.at(lane).back());
+    ++count;
+  }
+  statistics_.sent += count;
+  flush();
+  return count;
+}
+
+// The end of the connection shows to the reading thread, which sees to it.
+void LocalBus::flush() {
+  static_cast<void>(connection_->stream.flush());
+  if (!connection_->stream.flushed()) {
+    wake_.set();
+  }
+}
+
+Transfer LocalBus::receive(std::span<Received> frames, Timeout timeout) {
+  const Deadline deadline(timeout);
+  for (;;) {
+    {
+      const std::lock_guard lock(mutex_);
+      if (closed_) {
+        return {Result::closed, 0};
+      }
+      if (const std::size_t count = take(frames); count > 0) {
+        return {Result::ok, count};
+      }
+    }
+    if (frames.empty() || deadline.passed()) {
+      return {cancelled_ ? Result::cancelled : Result::timeout, 0};
+    }
+    if (cancelled_) {
+      return {Result::cancelled, 0};
+    }
+    wait(readable_, deadline);
+  }
+}
+
+std::size_t LocalBus::take(std::span<Received> frames) {
+  const std::size_t count = std::min(frames.size(), queue_.size());
+  const auto end = queue_.begin() + static_cast<std::ptrdiff_t>(count);
+  std::copy(queue_.begin(), end, frames.begin());
+  queue_.erase(queue_.begin(), end);
+  statistics_.received += count;
+  const std::size_t before = std::min(count, queued_before_);
+  queued_before_ -= before;
+  consumed_ += count - before;
+  report_consumed();
+  if (queue_.empty()) {
+    readable_.clear();
+  }
+  return count;
+}
+
+void LocalBus::report_consumed() {
+  if (connection_ && consumed_ - reported_ >= consumed_lot) {
+    reported_ = consumed_;
+    append_record(connection_->stream.out(), Consumed{consumed_});
+    flush();
+  }
+}
+
+void LocalBus::set_filters(std::span<const SocketCanFilter> filters) {
+  if (filters.size() > max_filters) {
+    throw std::system_error(Errc::too_many_filters, name_);
+  }
+  const std::lock_guard lock(mutex_);
+  filters_.assign(filters.begin(), filters.end());
+  if (connection_) {
+    append_filters(connection_->stream.out(), filters_);
+    flush();
+  }
+}
+
+BusState LocalBus::state() const {
+  const std::lock_guard lock(mutex_);
+  return connection_ ? BusState::active : BusState::absent;
+}
+
+Statistics LocalBus::statistics() const {
+  const std::lock_guard lock(mutex_);
+  Statistics statistics = statistics_;
+  if (connection_) {
+    statistics.dropped += connection_->page.counters().dropped.load(std::memory_order_relaxed);
+  }
+  return statistics;
+}
+
+void LocalBus::cancel() noexcept {
+  cancelled_ = true;
+  cancel_.set();
+}
+
+void LocalBus::resume() noexcept {
+  cancelled_ = false;
+  cancel_.clear();
+}
+
+void LocalBus::close() noexcept {
+  {
+    std::unique_lock lock(mutex_);
+    if (closed_) {
+      return;
+    }
+    closed_ = true;
+    closed_flag_.set();
+    all_done_.wait_for(lock, close_time, [this] { return unacknowledged() == 0; });
+    statistics_.unsent += unacknowledged();
+  }
+  stop_.set();
+  thread_.join();
+  const std::lock_guard lock(mutex_);
+  if (connection_) {
+    disconnect();
+  }
+  connector_.leave();
+}
+
+/// Returns when the flag is set or the time is up, and at once when cancelled or closed.
+void LocalBus::wait(const EventFlag& flag, const Deadline& deadline) const {
+  std::array<pollfd, 3> entries{
+      {{flag.fd(), POLLIN, 0}, {cancel_.fd(), POLLIN, 0}, {closed_flag_.fd(), POLLIN, 0}}};
+  static_cast<void>(::poll(entries.data(), entries.size(), deadline.poll_ms()));
+}
+
+void LocalBus::run() {
+  while (!stop_.is_set()) {
+    // Only this thread ends or replaces the connection, so it may look without the lock.
+    if (!connection_) {
+      reconnect();
+      continue;
+    }
+    const int events = wants_to_write() ? POLLIN | POLLOUT : POLLIN;
+    std::array<pollfd, 3> entries{{{connection_->stream.fd(), static_cast<short>(events), 0},
+                                   {wake_.fd(), POLLIN, 0},
+                                   {stop_.fd(), POLLIN, 0}}};
+    static_cast<void>(::poll(entries.data(), entries.size(), -1));
+    serve();
+  }
+}
+
+bool LocalBus::wants_to_write() const {
+  const std::lock_guard lock(mutex_);
+  return !connection_->stream.flushed();
+}
+
+void LocalBus::serve() {
+  const std::lock_guard lock(mutex_);
+  wake_.clear();
+  static_cast<void>(connection_->stream.flush());
+  if (!read()) {
+    disconnect();
+    ++statistics_.outages;
+  }
+}
+
+/// One buffer's worth, so that the program gets its turn. @return false: the connection is over.
+bool LocalBus::read() {
+  Stream& stream = connection_->stream;
+  if (const Stream::Read read = stream.read(); read != Stream::Read::some) {
+    return read == Stream::Read::nothing;
+  }
+  Record record{};
+  Split split = Split::incomplete;
+  while ((split = stream.take(record)) == Split::record) {
+    if (!handle(record)) {
+      return false;
+    }
+  }
+  return split == Split::incomplete;
+}
+
+/// @return false: no hub of ours sends this.
+bool LocalBus::handle(const Record& record) {
+  switch (record.type) {
+    case RecordType::deliver:
+      return take_delivery(record.as<Deliver>());
+    case RecordType::done:
+      take_done(record.as<Done>());
+      return true;
+    default:
+      return false;
+  }
+}
+
+bool LocalBus::take_delivery(const Deliver& deliver) {
+  const std::optional<Frame> frame = from_wire(deliver.frame);
+  if (!frame || deliver.index <= index_) {
+    return false;
+  }
+  const std::uint64_t gap = deliver.index - index_ - 1;
+  index_ = deliver.index;
+  announced_ += gap;
+  lost_ += gap;
+  if (!senders_.is_new(deliver.sender, lane_of(*frame), deliver.sequence)) {
+    ++statistics_.duplicates;
+    ++consumed_;
+    return true;
+  }
+  const Timestamp time{std::chrono::nanoseconds(deliver.time_ns)};
+  queue_.push_back({*frame, time, std::exchange(lost_, 0)});
+  if (queue_.size() == 1) {
+    readable_.set();
+  }
+  return true;
+}
+
+void LocalBus::take_done(const Done& done) {
+  for (std::size_t lane = 0; lane < lane_count; ++lane) {
+    auto& sent = sent_.at(lane);
+    while (!sent.empty() && sent.front().sequence <= done.sequence.at(lane)) {
+      sent.pop_front();
+    }
+  }
+  sendable_.set();
+  if (unacknowledged() == 0) {
+    all_done_.notify_all();
+  }
+}
+
+// What the hub had for this client and cannot give any more is lost, and told with the next frame.
+void LocalBus::disconnect() {
+  const HubCounters& counters = connection_->page.counters();
+  const std::uint64_t lost = counters.dropped.load(std::memory_order_relaxed) +
+                             counters.at_risk.load(std::memory_order_relaxed);
+  statistics_.dropped += lost;
+  lost_ += lost - std::min(lost, announced_);
+  connection_.reset();
+}
+
+void LocalBus::reconnect() {
+  std::optional<Connection> connection;
+  try {
+    connection = connector_.connect(Deadline(retry_interval), stop_);
+  } catch (const std::system_error&) {
+    // Another kind of hub has taken the name. state() says absent, sends time out; it may leave
+    // again.
+    static_cast<void>(::poll(nullptr, 0, static_cast<int>(retry_interval.count())));
+  }
+  if (connection) {
+    const std::lock_guard lock(mutex_);
+    adopt(std::move(*connection));
+  }
+}
+
+void LocalBus::adopt(Connection connection) {
+  connection_.emplace(std::move(connection));
+  index_ = announced_ = consumed_ = reported_ = 0;
+  queued_before_ = queue_.size();
+  Buffer& out = connection_->stream.out();
+  append_filters(out, filters_);
+  for (const auto& lane : sent_) {
+    for (const OfferedFrame& frame : lane) {
+      append_record(out, frame);
+    }
+  }
+  statistics_.resent += unacknowledged();
+  flush();
+  sendable_.set();
+}
+
+}  // namespace
+}  // namespace local
+
+std::unique_ptr<Bus> open_local(const std::string& bus_name,
+                                std::optional<std::uint32_t> bitrate_bps,
+                                const OpenOptions& options) {
+  return std::make_unique<local::LocalBus>(bus_name, bitrate_bps, options);
+}
+
+}  // namespace roio

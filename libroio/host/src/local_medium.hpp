@@ -1,0 +1,94 @@
+#ifndef ROIO_LOCAL_MEDIUM_HPP
+#define ROIO_LOCAL_MEDIUM_HPP
+
+#include <array>
+#include <chrono>
+#include <cstdint>
+#include <deque>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "local_protocol.hpp"
+
+namespace roio::local {
+
+/// One client's frames that wait for the bus: what a controller's transmit buffers are on a real
+/// one.
+class Station {
+ public:
+  explicit Station(std::uint64_t sender) : sender_(sender) {}
+
+  struct Offer {
+    Frame frame;
+    std::uint64_t sequence;
+  };
+
+  void add(std::size_t lane, const Offer& offer) { lanes_.at(lane).push_back(offer); }
+  [[nodiscard]] std::uint64_t sender() const { return sender_; }
+  [[nodiscard]] bool empty() const {
+    return lanes_[urgent_lane].empty() && lanes_[normal_lane].empty();
+  }
+  [[nodiscard]] std::size_t waiting(std::size_t lane) const { return lanes_.at(lane).size(); }
+
+  /// The lane that this station contends with: urgent frames pass normal ones. None when empty.
+  [[nodiscard]] std::optional<std::size_t> lane() const;
+  /// The first frame of that lane, without or with taking it. Not when empty.
+  [[nodiscard]] const Offer& front() const { return lanes_.at(*lane()).front(); }
+  Offer take();
+
+ private:
+  std::uint64_t sender_;
+  std::array<std::deque<Offer>, lane_count> lanes_;
+};
+
+/// The wire between the stations: lowest arbitration key first and, when it has a bit rate, one
+/// frame at a time for as long as its bits take. Without one, frames pass in no time. Time is the
+/// caller's.
+class Medium {
+ public:
+  using TimePoint = std::chrono::steady_clock::time_point;
+
+  struct Transmission {
+    std::shared_ptr<Station> from;
+    Station::Offer offer;
+    std::size_t lane;
+    TimePoint end;  ///< When the frame's last bit has passed.
+  };
+
+  explicit Medium(std::optional<std::uint32_t> bitrate_bps) : bitrate_bps_(bitrate_bps) {}
+
+  [[nodiscard]] std::optional<std::uint32_t> bitrate_bps() const { return bitrate_bps_; }
+
+  void attach(std::shared_ptr<Station> station) { stations_.push_back(std::move(station)); }
+  /// The station stays until its frames have been sent, as a controller's would.
+  void detach(const std::shared_ptr<Station>& station);
+
+  /// Tells that stations may have been given frames, at `now`.
+  void offered(TimePoint now);
+
+  /// The next frame that has passed by `now`, if there is one. Call until there is none.
+  std::optional<Transmission> next(TimePoint now);
+
+  /// Whether frames may wait: offered, and next() has not said since that there are none.
+  [[nodiscard]] bool contended() const { return contended_; }
+
+  /// When next() will have something by itself; none: not before offered().
+  [[nodiscard]] std::optional<TimePoint> next_end() const;
+
+ private:
+  std::optional<Transmission> arbitrate();
+  void drop_detached();
+
+  std::optional<std::uint32_t> bitrate_bps_;
+  std::vector<std::shared_ptr<Station>> stations_;
+  std::vector<std::shared_ptr<Station>> detached_;
+  std::optional<Transmission> on_wire_;
+  std::size_t first_ = 0;  // the station asked first when several have the same key
+  TimePoint idle_since_{};
+  bool contended_ = false;
+};
+
+}  // namespace roio::local
+
+#endif
