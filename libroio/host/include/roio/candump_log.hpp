@@ -20,25 +20,32 @@
 
 namespace roio {
 
+/// The longest name in a line: "local:" and a bus name of 64 bytes (an interface's has at most 15).
+inline constexpr std::size_t max_log_name = 70;
+
 struct LogLine {
   Timestamp time{};
-  std::string interface_name;  ///< 1..15 bytes, none of them white space.
+  std::string interface_name;  ///< 1..max_log_name bytes, no white space or control character.
   Frame frame{};
 };
 
-/// One line, without or with its line end. Anything after the frame but white space is refused,
-/// except canplayer's own " R" or " T" direction mark. CAN FD ("##") and CAN XL frames are refused
-/// by name.
+/// One line, without or with its line end ("\n" or "\r\n"). Anything after the frame but blanks is
+/// refused, except the direction mark " R" or " T" of candump -x. CAN FD ("##") and CAN XL
+/// frames are refused by name. Fractions of a second of 1..9 digits are taken.
 Parsed<LogLine> parse_log_line(std::string_view line);
 
-/// The frame part alone: "123#1122", as cansend takes it (dots between bytes allowed).
+/// The frame part alone: "123#1122", as cansend takes it (dots between bytes allowed). Where
+/// cansend guesses, this refuses: a ninth byte, an identifier above 7FF in three digits, text after
+/// R.
 Parsed<Frame> parse_frame_text(std::string_view text);
 
 /// Room for the longest line that format_log_line() writes.
-inline constexpr std::size_t max_log_line = 96;
+inline constexpr std::size_t max_log_line = 117;
 
 /// Writes one line with its '\n', byte for byte what candump -L prints.
-/// @param interface_name cut off after 63 bytes.
+/// @param time microseconds are shown; before 1970 (which candump cannot show) it becomes 0.
+/// @param interface_name cut off after max_log_name bytes.
+/// @param frame one that is_valid(); others are cut down to fields that fit.
 /// @return bytes written, no terminating zero.
 std::size_t format_log_line(std::span<char, max_log_line> out, Timestamp time,
                             std::string_view interface_name, const Frame& frame) noexcept;
