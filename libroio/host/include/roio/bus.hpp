@@ -76,6 +76,7 @@ struct Statistics {
   std::uint64_t resent = 0;         ///< Frames sent again to a new hub (local bus).
   std::uint64_t duplicates = 0;  ///< Frames come a second time over a new hub, not delivered again.
   std::uint64_t unsent = 0;      ///< Frames accepted by send() and lost on close() or with a hub.
+  std::uint64_t overruns = 0;    ///< Reports of a controller that it lost frames, how many unsaid.
 };
 
 struct OpenOptions {
