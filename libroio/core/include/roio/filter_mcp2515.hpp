@@ -80,7 +80,7 @@ inline bool covered(const FilterRule& cube, const FilterRule* rules, const Filte
 }
 
 /// Searches the way to share out the rules among the six filters that lets the fewest identifiers
-/// through, counted filter by filter. Exhaustive with pruning over at most max_rules rules.
+/// through. Exhaustive with pruning over at most max_rules rules.
 class Mcp2515Search {
  public:
   static constexpr uint8_t max_rules = 8;
@@ -106,9 +106,39 @@ class Mcp2515Search {
     return ids;
   }
 
-  // At most 6 * 2^29 identifiers: fits in 32 bits.
+  bool same_as_earlier(uint8_t buffer, uint8_t index, uint32_t mask) const {
+    const uint32_t* const matches = match_ + first_filter(buffer);
+    for (uint8_t i = 0; i < index; ++i) {
+      if (((matches[i] ^ matches[index]) & mask) == 0) {
+        return true;
+      }
+    }
+    return false;
+  }
+
+  // How many identifiers get through. Different filters behind one mask share none, so only what
+  // both buffers accept must be taken off again. At most 6 * 2^29 on the way: fits in 32 bits.
   uint32_t cost(const uint32_t masks[2]) const {
-    return used_[0] * accepted_by(masks[0]) + used_[1] * accepted_by(masks[1]);
+    uint32_t ids = 0;
+    for (uint8_t buffer = 0; buffer < 2; ++buffer) {
+      for (uint8_t i = 0; i < used_[buffer]; ++i) {
+        if (!same_as_earlier(buffer, i, masks[buffer])) {
+          ids += accepted_by(masks[buffer]);
+          ids -= buffer == 0 ? 0 : shared_with_first_buffer(match_[first_filter(1) + i], masks);
+        }
+      }
+    }
+    return ids;
+  }
+
+  uint32_t shared_with_first_buffer(uint32_t match, const uint32_t masks[2]) const {
+    uint32_t ids = 0;
+    for (uint8_t i = 0; i < used_[0]; ++i) {
+      if (((match_[i] ^ match) & masks[0] & masks[1]) == 0 && !same_as_earlier(0, i, masks[0])) {
+        ids += accepted_by(masks[0] | masks[1]);
+      }
+    }
+    return ids;
   }
 
   // A placement only ever widens masks or takes another filter, so its cost bounds all that follow.
@@ -196,11 +226,11 @@ constexpr FilterRule nobody() {
 }  // namespace detail
 
 /// Fits a program to the chip. Never rejects what the program accepts; where six filters behind two
-/// masks cannot say it exactly, lets through as little more as can be: the smallest sum over the
-/// filters, each rule whole in one filter, for up to 8 rules; a longer program has its closest
-/// rules joined first. An empty program accepts one identifier that nobody sends (the chip cannot
-/// accept none). Cost: with rules that fit, a few hundred steps; at worst (8 that do not) some ten
-/// thousand. Recursive, about 400 bytes of stack on AVR. No heap.
+/// masks cannot say it exactly, lets through as few more identifiers as can be with each rule whole
+/// in one filter, for up to 8 rules; a longer program has its closest rules joined first. An empty
+/// program accepts one identifier that nobody sends (the chip cannot accept none). Cost: with rules
+/// that fit, a few hundred steps; at worst (8 that do not) some ten thousand. Recursive, about 400
+/// bytes of stack on AVR. No heap.
 template <uint8_t Capacity>
 Mcp2515Filters fit_mcp2515(const FilterProgram<Capacity>& program) {
   FilterRule rules[Capacity == 0 ? 1 : Capacity];

@@ -32,9 +32,20 @@ constexpr SocketCanFilter to_socketcan(const FilterRule& rule) {
                          rule.mask | socketcan::extended_flag | socketcan::remote_flag};
 }
 
-/// What the kernel does with a filter, for backends that have no kernel behind them.
+/// The mask as the kernel applies it: a filter for standard frames only (the extended flag in
+/// can_mask, not in can_id) compares no identifier bit above the 11.
+constexpr uint32_t effective_mask(const SocketCanFilter& filter) {
+  return (filter.can_mask & socketcan::extended_flag) != 0 &&
+                 (filter.can_id & socketcan::extended_flag) == 0
+             ? filter.can_mask &
+                   (max_id(FrameKind::standard) | socketcan::extended_flag | socketcan::remote_flag)
+             : filter.can_mask & ~socketcan::error_flag;
+}
+
+/// What the kernel does with a filter, for backends that have no kernel behind them. Not for error
+/// reports, which the kernel filters by other means.
 constexpr bool accepts(const SocketCanFilter& filter, uint32_t tagged) {
-  return ((((tagged ^ filter.can_id) & filter.can_mask & ~socketcan::inverted) == 0)) !=
+  return (((tagged ^ filter.can_id) & effective_mask(filter)) == 0) !=
          ((filter.can_id & socketcan::inverted) != 0);
 }
 

@@ -108,14 +108,16 @@ inline StuffCounter count_stuff_bits(const Frame& frame) {
 
 }  // namespace detail
 
-/// Bits of a frame without any stuff bit: 67 to 131 extended, 47 to 111 standard.
+/// Bits of a frame without any stuff bit: 67 to 131 extended, 47 to 111 standard. No frame is
+/// shorter.
 /// @param length 0..8; more counts as 8. Remote frames carry no data whatever it is.
 constexpr uint8_t shortest_bits(FrameKind kind, uint8_t length) {
   return static_cast<uint8_t>(detail::stuffed_region_bits(kind, length) + detail::unstuffed_bits);
 }
 
-/// Bits of the worst frame of this kind and length: a stuff bit after the first 5 bits, then after
-/// every 4. 80 to 160 extended.
+/// The worst case to plan with: a stuff bit after the first 5 bits, then after every 4. 80 to 160
+/// extended, 55 to 135 standard. No frame is longer; the bits that are the same in every frame keep
+/// the longest extended data frame 2 bits below, the longest standard one 1 to 3.
 constexpr uint8_t longest_bits(FrameKind kind, uint8_t length) {
   return static_cast<uint8_t>(shortest_bits(kind, length) +
                               (detail::stuffed_region_bits(kind, length) - 1U) / 4U);
@@ -123,7 +125,7 @@ constexpr uint8_t longest_bits(FrameKind kind, uint8_t length) {
 
 /// Bits of this very frame, its CRC and stuff bits worked out.
 /// @param frame valid; its length above 8 counts as 8 data bytes with that DLC.
-/// @return 47..160; 0 for an error report, which never is on the wire.
+/// @return 47..158; 0 for an error report, which never is on the wire.
 inline uint8_t wire_bits(const Frame& frame) {
   return frame.kind == FrameKind::error
              ? 0
