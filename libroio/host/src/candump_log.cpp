@@ -7,12 +7,12 @@
 #include "decimal.hpp"
 #include "frame_text.hpp"
 #include "quote.hpp"
+#include "seconds.hpp"
 
 namespace roio {
 namespace {
 
-constexpr std::uint64_t ns_per_s = 1000000000;
-constexpr auto latest_ns = static_cast<std::uint64_t>(Timestamp::duration::max().count());
+constexpr std::uint64_t us_per_s = 1000000;
 constexpr std::size_t second_digits = 10;
 constexpr std::size_t microsecond_digits = 6;
 
@@ -60,28 +60,6 @@ std::string_view without_line_end(std::string_view line) {
   return line;
 }
 
-// "25" is 250,000,000 ns.
-std::uint64_t fraction_ns(std::string_view digits) {
-  std::uint64_t value = 0;
-  for (std::size_t i = 0; i < 9; ++i) {
-    value = 10 * value + (i < digits.size() ? static_cast<std::uint64_t>(digits[i] - '0') : 0);
-  }
-  return value;
-}
-
-Parsed<Timestamp> to_timestamp(std::string_view seconds_text, std::string_view fraction_text) {
-  std::uint64_t seconds = 0;
-  const auto parsed =
-      std::from_chars(seconds_text.data(), seconds_text.data() + seconds_text.size(), seconds);
-  const std::uint64_t fraction = fraction_ns(fraction_text);
-  if (parsed.ec != std::errc() || seconds > (latest_ns - fraction) / ns_per_s) {
-    return ParseError{
-        "time " + quote(seconds_text) + " is out of range; expected at most 9223372036.854775807 s",
-        1};
-  }
-  return Timestamp(Timestamp::duration(static_cast<std::int64_t>(seconds * ns_per_s + fraction)));
-}
-
 Parsed<Timestamp> read_time(std::string_view word) {
   if (!word.starts_with('(')) {
     return ParseError{"no '(' at its start; expected (SECONDS.FRACTION) INTERFACE FRAME", 0};
@@ -102,7 +80,12 @@ Parsed<Timestamp> read_time(std::string_view word) {
     return ParseError{
         "time " + quote(time) + "; expected seconds, a dot and 1..9 digits, such as 0.250000", 1};
   }
-  return to_timestamp(seconds, fraction);
+  const auto timestamp = read_seconds(seconds, fraction);
+  if (!timestamp) {
+    return ParseError{
+        "time " + quote(time) + " is out of range; expected at most " + latest_time + " s", 1};
+  }
+  return *timestamp;
 }
 
 bool is_control(char character) {
@@ -179,22 +162,12 @@ Parsed<LogLine> read_log_line(std::string_view line) {
   return LogLine{*time, std::string(name), *frame};
 }
 
-// Writes exactly `digits` digits, from the last to the first.
-char* write_decimal(char* out, std::uint64_t value, std::size_t digits) noexcept {
-  for (std::size_t i = digits; i > 0; --i) {
-    out[i - 1] = static_cast<char>('0' + value % 10);
-    value /= 10;
-  }
-  return out + digits;
-}
-
 char* write_time(char* out, Timestamp time) noexcept {
-  const std::int64_t count = std::max<std::int64_t>(time.time_since_epoch().count(), 0);
-  const auto ns = static_cast<std::uint64_t>(count);
+  const std::uint64_t us = microseconds(time);
   *out++ = '(';
-  out = write_decimal(out, ns / ns_per_s, second_digits);
+  out = write_decimal(out, us / us_per_s, second_digits);
   *out++ = '.';
-  out = write_decimal(out, ns % ns_per_s / 1000, microsecond_digits);
+  out = write_decimal(out, us % us_per_s, microsecond_digits);
   *out++ = ')';
   return out;
 }

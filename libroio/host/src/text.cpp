@@ -7,7 +7,8 @@
 namespace roio {
 namespace {
 
-constexpr const char* node_range = "expected 0..254, or * for a broadcast";
+constexpr const char* destination_range = "expected 0..254, or * for a broadcast";
+constexpr const char* source_range = "expected 0..254";
 
 // Why a text is not a number of a range: not a number at all, one written oddly, or another one.
 std::string why_not(std::string_view number) {
@@ -23,11 +24,10 @@ std::string why_not(std::string_view number) {
   return ' ' + (number.size() > 20 ? quote(number) : std::string(number)) + " is out of range";
 }
 
-Parsed<Address> read_address(std::string_view text) {
+Parsed<Address> read_address(std::string_view text, const char* node_range) {
   const std::size_t dot = text.find('.');
   if (dot == std::string_view::npos) {
-    return ParseError{"no dot; expected SUBNET.NODE, such as 0.2, or SUBNET.* for a broadcast",
-                      text.size()};
+    return ParseError{"no dot; expected SUBNET.NODE, such as 0.2", text.size()};
   }
   const auto subnet = read_decimal(text.substr(0, dot));
   if (!subnet || *subnet > max_subnet) {
@@ -44,7 +44,7 @@ Parsed<Address> read_address(std::string_view text) {
 }  // namespace
 
 Parsed<Address> parse_address(std::string_view text) {
-  const Parsed<Address> address = read_address(text);
+  const Parsed<Address> address = read_address(text, destination_range);
   if (!address) {
     return in_context("address", text, address.error());
   }
@@ -52,8 +52,11 @@ Parsed<Address> parse_address(std::string_view text) {
 }
 
 Parsed<Address> parse_source(std::string_view text) {
-  const Parsed<Address> address = parse_address(text);
-  if (address && is_broadcast(*address)) {
+  const Parsed<Address> address = read_address(text, source_range);
+  if (!address) {
+    return in_context("address", text, address.error());
+  }
+  if (is_broadcast(*address)) {
     return in_context(
         "address", text,
         {"a broadcast is no address of a node's own; expected node 0..254", text.find('.') + 1});

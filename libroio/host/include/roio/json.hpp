@@ -30,12 +30,17 @@ struct JsonMessage {
 /// Decodes one message. Unknown fields are errors, so a slip of the pen is seen.
 /// Refused with the field's name and what was expected there: missing, of the wrong type, out of
 /// range, not an integer, contradicting another, given twice; texts above 4,096 bytes, nested
-/// deeper than the format ever is, or not UTF-8.
+/// deeper than the format ever is, or not UTF-8. A subnet "server" and an address that is a name,
+/// which the original has between software modules, are refused as such.
+/// ParseError::offset is that of a syntax error; where the field is named, it is 0. Throws nothing
+/// but std::bad_alloc. Fractions of a timestamp are taken to the nanosecond.
 Parsed<JsonMessage> parse_json(std::string_view text);
 
 /// Encodes one message on one line, no line end: the original's fields in the original's order,
 /// then priority when urgent, class when not message, source when has_source, timestamp when there
-/// is one.
+/// is one. The address is left out of a broadcast. A timestamp has microseconds: what is below is
+/// cut off, and a time before 1970 becomes 0.
+/// @param message one that to_frame() takes (its source, when it has one, too).
 std::string to_json(const JsonMessage& message);
 
 }  // namespace roio

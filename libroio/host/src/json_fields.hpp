@@ -1,0 +1,81 @@
+#ifndef ROIO_JSON_FIELDS_HPP
+#define ROIO_JSON_FIELDS_HPP
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <roio/bus.hpp>
+#include <roio/text.hpp>
+#include <string>
+
+namespace roio {
+
+/// The fields of a Roio message in JSON. Source: docs/protocol.md "JSON".
+enum class Field : std::uint8_t {
+  type,
+  is_broadcast,
+  address,
+  subnet,
+  message_length,
+  data,
+  priority,
+  message_class,
+  source,
+  destination,
+  timestamp,
+};
+
+struct FieldRule {
+  Field field;
+  const char* name;
+  const char* expected;
+};
+
+inline constexpr std::array<FieldRule, 11> field_rules{
+    {{Field::type, "type", "\"Roio\""},
+     {Field::is_broadcast, "isBroadcast", "true or false"},
+     {Field::address, "address", "an integer 0..254"},
+     {Field::subnet, "subnet", "an integer 0..31"},
+     {Field::message_length, "messageLength", "an integer 0..8"},
+     {Field::data, "data", "an array of up to 8 integers 0..255"},
+     {Field::priority, "priority", "\"urgent\" or \"normal\""},
+     {Field::message_class, "class", "\"message\", \"system\" or \"stream\""},
+     {Field::source, "source", "\"SUBNET.NODE\", such as \"0.10\""},
+     {Field::destination, "destination", "\"SUBNET.NODE\" or \"SUBNET.*\""},
+     {Field::timestamp, "timestamp", "seconds since 1970, a number 0..9223372036.854775807"}}};
+
+inline const FieldRule& rule_of(Field field) {
+  return field_rules[static_cast<std::size_t>(field)];
+}
+
+/// JSON field "address": 256
+inline std::string field_error(Field field, const std::string& what) {
+  return std::string("JSON field \"") + rule_of(field).name + "\": " + what;
+}
+
+/// JSON field "address": 256; expected an integer 0..254
+inline std::string unexpected(Field field, const std::string& value) {
+  return field_error(field, value + "; expected " + rule_of(field).expected);
+}
+
+/// What the fields said, before it is known whether they agree.
+struct Fields {
+  std::array<bool, field_rules.size()> seen{};
+  bool is_broadcast = false;
+  std::uint8_t address = broadcast_node;
+  std::uint8_t subnet = 0;
+  std::uint8_t message_length = 0;
+  Bytes data;
+  Priority priority = Priority::normal;
+  MessageClass message_class = MessageClass::message;
+  Address source{};
+  Address destination{};
+  std::optional<Timestamp> timestamp;
+
+  [[nodiscard]] bool has(Field field) const { return seen[static_cast<std::size_t>(field)]; }
+};
+
+}  // namespace roio
+
+#endif
