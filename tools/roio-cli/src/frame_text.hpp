@@ -1,0 +1,45 @@
+/// One frame as a line for people, in columns:
+///
+///   0.10   -> 0.2     normal  message  [3]  5A 2D 00
+///   31.254 -> 31.*    urgent  system   [0]
+///   foreign  11-bit 123                [2]  11 22
+///   foreign  29-bit 1004A00A           [4]  remote request
+///   error    00000040                  [8]  00 00 00 00 00 00 00 00  bus-off
+#ifndef ROIO_CLI_FRAME_TEXT_HPP
+#define ROIO_CLI_FRAME_TEXT_HPP
+
+#include <fmt/format.h>
+
+#include <optional>
+#include <roio/bus.hpp>
+
+namespace roio::cli {
+
+using Buffer = fmt::memory_buffer;
+
+/// Appends the line without its end. Never allocates for a buffer that has room.
+/// @param colour adds terminal colours: urgent messages stand out, foreign frames stand back.
+void append_frame(Buffer& out, const Frame& frame, bool colour);
+
+/// Whether a frame is a Roio message; the others are foreign, or error reports.
+bool is_roio(const Frame& frame) noexcept;
+
+/// The time column of `-t`, as candump's: a "(1436509052.249713) ", d and z "(000.001234) ".
+class TimeColumn {
+ public:
+  enum class Mode : char { none = 0, absolute = 'a', delta = 'd', zero = 'z' };
+
+  explicit TimeColumn(Mode mode) : mode_(mode) {}
+
+  /// Appends the column for the next frame; the first one of d and z is at 0, and a clock that
+  /// went backwards shows as no time passed.
+  void append(Buffer& out, Timestamp time);
+
+ private:
+  Mode mode_;
+  std::optional<Timestamp> reference_;
+};
+
+}  // namespace roio::cli
+
+#endif

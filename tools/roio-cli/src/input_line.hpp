@@ -1,0 +1,48 @@
+/// What `send BUS -` reads: one message a line, as JSON or as candump's log.
+#ifndef ROIO_CLI_INPUT_LINE_HPP
+#define ROIO_CLI_INPUT_LINE_HPP
+
+#include <cstddef>
+#include <optional>
+#include <roio/address.hpp>
+#include <roio/frame.hpp>
+#include <roio/text.hpp>
+#include <string>
+#include <string_view>
+
+namespace roio::cli {
+
+/// Reads one line that is not blank. "{" begins a JSON message (its source is `default_source` when
+/// it names none), "(" a line of a log, whose frame is taken as it is.
+/// @return the frame, one that can be sent; or an error that says what was expected.
+Parsed<Frame> parse_input_line(std::string_view line, Address default_source);
+
+bool is_blank(std::string_view line) noexcept;
+
+/// Cuts what comes from a file descriptor into lines, in bounded memory.
+class LineReader {
+ public:
+  static constexpr std::size_t max_line = 65536;  ///< Bytes; of a longer line, the rest is skipped.
+
+  explicit LineReader(int fd) : fd_(fd) {}
+
+  /// The next line that has come whole, without its end; at the end of the input also one that has
+  /// none. Valid until the next call.
+  std::optional<std::string_view> next();
+
+  /// Reads more; may wait.
+  /// @return false at the end of the input.
+  /// @throws Failure: the input cannot be read.
+  bool fill();
+
+ private:
+  int fd_;
+  std::string text_;
+  std::size_t begin_ = 0;  // of what next() has not returned yet
+  bool at_end_ = false;
+  bool skipping_ = false;  // the rest of a line that was too long
+};
+
+}  // namespace roio::cli
+
+#endif

@@ -1,0 +1,42 @@
+/// SIGINT and SIGTERM end a command cleanly: its waits return, it finishes its line and says its
+/// last word. A second one kills. SIGPIPE is left to write(), which reports it.
+#ifndef ROIO_CLI_INTERRUPT_HPP
+#define ROIO_CLI_INTERRUPT_HPP
+
+#include <chrono>
+#include <roio/bus.hpp>
+
+namespace roio::cli {
+
+/// One at a time; from its construction on, signals are caught.
+class Interrupt {
+ public:
+  Interrupt();
+  Interrupt(const Interrupt&) = delete;
+  Interrupt& operator=(const Interrupt&) = delete;
+  ~Interrupt();
+
+  /// The signal that came, or 0.
+  [[nodiscard]] static int signal() noexcept;
+
+  /// Waits until `until`.
+  /// @return false when a signal ended the wait.
+  [[nodiscard]] static bool sleep_until(std::chrono::steady_clock::time_point until);
+
+  /// Waits without limit until fd can be read (or is at its end).
+  /// @return false when a signal ended the wait.
+  [[nodiscard]] static bool wait_readable(int fd);
+};
+
+/// While it lives, a signal also cancels the waits of a bus.
+class CancelOnSignal {
+ public:
+  explicit CancelOnSignal(Bus& bus) noexcept;
+  CancelOnSignal(const CancelOnSignal&) = delete;
+  CancelOnSignal& operator=(const CancelOnSignal&) = delete;
+  ~CancelOnSignal();
+};
+
+}  // namespace roio::cli
+
+#endif

@@ -1,0 +1,44 @@
+/// What `dump` writes: the frames and, between them, what happened to the bus, in one of three
+/// forms.
+#ifndef ROIO_CLI_RECORD_FORMAT_HPP
+#define ROIO_CLI_RECORD_FORMAT_HPP
+
+#include <cstdint>
+#include <memory>
+#include <roio/bus.hpp>
+#include <string>
+
+#include "frame_text.hpp"
+
+namespace roio::cli {
+
+class RecordFormat {
+ public:
+  RecordFormat() = default;
+  RecordFormat(const RecordFormat&) = delete;
+  RecordFormat& operator=(const RecordFormat&) = delete;
+  virtual ~RecordFormat() = default;
+
+  /// Each appends whole lines with their ends.
+  virtual void frame(Buffer& out, const Received& received) = 0;
+  virtual void lost(Buffer& out, std::uint64_t count) = 0;
+  virtual void state(Buffer& out, BusState state) = 0;
+};
+
+/// Aligned columns for people.
+std::unique_ptr<RecordFormat> text_format(TimeColumn::Mode time, bool colour);
+
+/// Byte for byte what candump -L prints; losses and states go to standard error.
+/// @param interface_name as the log is to name it.
+std::unique_ptr<RecordFormat> log_format(std::string interface_name);
+
+/// One JSON object a line (json_lines.cpp).
+/// @throws UsageError: this roio-cli was built without JSON.
+std::unique_ptr<RecordFormat> json_format();
+
+/// "1 frame", "2 frames".
+std::string count_of(std::uint64_t count, const char* what);
+
+}  // namespace roio::cli
+
+#endif

@@ -1,0 +1,187 @@
+#include "send.hpp"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <roio/text.hpp>
+#include <span>
+#include <vector>
+
+#include "exit_status.hpp"
+#include "input_line.hpp"
+#include "interrupt.hpp"
+#include "output.hpp"
+#include "record_format.hpp"
+
+namespace roio::cli {
+namespace {
+
+constexpr std::size_t batch_size = 64;
+
+/// Sends frames in order, as fast as the bus takes them or one an interval.
+class Sender {
+ public:
+  Sender(const SendOptions& options, Bus& bus)
+      : options_(options), bus_(bus), next_(std::chrono::steady_clock::now()) {}
+
+  [[nodiscard]] std::uint64_t sent() const { return sent_; }
+
+  /// @return false when a signal came first.
+  /// @throws Failure: a frame had to wait longer than the timeout.
+  bool send(std::span<const Frame> frames) {
+    if (options_.interval.count() == 0) {
+      return send_now(frames);
+    }
+    return std::all_of(frames.begin(), frames.end(), [this](const Frame& frame) {
+      const bool awake = Interrupt::sleep_until(next_);
+      next_ += options_.interval;
+      return awake && send_now(std::span(&frame, 1));
+    });
+  }
+
+ private:
+  bool send_now(std::span<const Frame> frames) {
+    while (!frames.empty()) {
+      const Transfer transfer = bus_.send(frames, options_.timeout);
+      sent_ += transfer.count;
+      frames = frames.subspan(transfer.count);
+      if (Interrupt::signal() != 0 || transfer.result == Result::cancelled) {
+        return false;
+      }
+      // The timeout is each frame's: as long as some go out, the others may wait on.
+      if (transfer.result != Result::ok && transfer.count == 0) {
+        throw Failure(bus_.name() + ": not sent within " +
+                      std::to_string(options_.timeout.count()) + " ms, the bus is " +
+                      to_string(bus_.state()) + "; " + count_of(sent_, "message") + " sent before");
+      }
+    }
+    return true;
+  }
+
+  const SendOptions& options_;
+  Bus& bus_;
+  std::chrono::steady_clock::time_point next_;  // when the next frame is due
+  std::uint64_t sent_ = 0;
+};
+
+void send_repeatedly(Sender& sender, const Message& message, std::uint64_t count) {
+  Frame frame{};
+  if (to_frame(message, frame) != Status::ok) {
+    throw UsageError("not a message that can be sent");  // the options allow none such
+  }
+  const std::vector<Frame> batch(batch_size, frame);
+  const bool endless = count == 0;
+  bool going = true;
+  while (going && (endless || sender.sent() < count)) {
+    const std::uint64_t left = endless ? batch_size : count - sender.sent();
+    going = sender.send(std::span(batch).first(std::min<std::uint64_t>(left, batch_size)));
+  }
+}
+
+/// Standard input, line by line.
+class LineSender {
+ public:
+  LineSender(Sender& sender, Address default_source)
+      : sender_(sender), default_source_(default_source), reader_(STDIN_FILENO) {}
+
+  [[nodiscard]] std::uint64_t refused() const { return refused_; }
+
+  void run() {
+    bool more = true;
+    while (more && Interrupt::wait_readable(STDIN_FILENO)) {
+      more = reader_.fill();
+      if (!take_lines() || !send_pending()) {
+        return;
+      }
+    }
+  }
+
+ private:
+  bool take_lines() {
+    while (const auto line = reader_.next()) {
+      ++line_number_;
+      if (!is_blank(*line)) {
+        take(*line);
+      }
+      if (pending_.size() == batch_size && !send_pending()) {
+        return false;
+      }
+    }
+    return true;
+  }
+
+  void take(std::string_view line) {
+    const auto frame = parse_input_line(line, default_source_);
+    if (frame) {
+      pending_.push_back(*frame);
+      return;
+    }
+    ++refused_;
+    note("line " + std::to_string(line_number_) + ": " + frame.error().message);
+  }
+
+  bool send_pending() {
+    const bool going = sender_.send(pending_);
+    pending_.clear();
+    return going;
+  }
+
+  Sender& sender_;
+  Address default_source_;
+  LineReader reader_;
+  std::vector<Frame> pending_;
+  std::uint64_t line_number_ = 0;
+  std::uint64_t refused_ = 0;
+};
+
+std::uint64_t send_lines(Sender& sender, Address source) {
+  if (::isatty(STDIN_FILENO) == 1) {
+    note("reading JSON messages or log lines; Ctrl-D ends");
+  }
+  LineSender lines(sender, source);
+  lines.run();
+  return lines.refused();
+}
+
+// What send() accepted and close() could not hand over.
+void close(Bus& bus) {
+  bus.close();
+  if (const std::uint64_t unsent = bus.statistics().unsent; unsent > 0) {
+    throw Failure(bus.name() + ": " + count_of(unsent, "message") +
+                  " not handed over before the bus closed");
+  }
+}
+
+int finish(const SendOptions& options, const Sender& sender, std::uint64_t refused) {
+  const std::string sent = options.bus + ": " + count_of(sender.sent(), "message") + " sent";
+  if (refused > 0) {
+    note(sent + ", " + count_of(refused, "line") + " refused");
+  }
+  if (const int signal = Interrupt::signal()) {
+    if (refused == 0) {
+      note(sent);
+    }
+    return exit_signal + signal;
+  }
+  return refused > 0 ? exit_failure : exit_success;
+}
+
+}  // namespace
+
+int send(const SendOptions& options) {
+  OpenOptions open_options;
+  open_options.send_only = true;
+  const auto bus = open(options.bus, open_options);
+  const CancelOnSignal cancel_on_signal(*bus);
+  Sender sender(options, *bus);
+  std::uint64_t refused = 0;
+  if (options.message) {
+    send_repeatedly(sender, *options.message, options.count);
+  } else {
+    refused = send_lines(sender, options.source);
+  }
+  close(*bus);
+  return finish(options, sender, refused);
+}
+
+}  // namespace roio::cli
