@@ -1,0 +1,1 @@
+#error "a program that uses Roio does not need nlohmann-json"
