@@ -1,0 +1,161 @@
+// The hub's rules that no other bus has: bit rates that must agree, who may use it, what is cleaned
+// up, and pacing by exact frame length.
+#include <gtest/gtest.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <csignal>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <roio.hpp>
+
+#include "process.hpp"
+
+namespace roio {
+namespace {
+
+using namespace std::chrono_literals;
+using test::Peer;
+using test::unique_name;
+
+// What open() says when it refuses.
+std::string refusal(const std::string& url) {
+  try {
+    const auto bus = open(url, {.open_timeout = 300ms});
+  } catch (const std::system_error& error) {
+    return error.what();
+  }
+  return "(opened)";
+}
+
+// A folder for buses of this test's own.
+class RuntimeFolder {
+ public:
+  explicit RuntimeFolder(const std::string& name)
+      : path_(std::filesystem::temp_directory_path() / name) {
+    ::setenv("ROIO_RUNTIME_DIR", path_.c_str(), 1);
+  }
+  RuntimeFolder(const RuntimeFolder&) = delete;
+  RuntimeFolder& operator=(const RuntimeFolder&) = delete;
+  ~RuntimeFolder() {
+    ::unsetenv("ROIO_RUNTIME_DIR");
+    std::filesystem::remove_all(path_);
+  }
+  [[nodiscard]] const std::filesystem::path& path() const { return path_; }
+
+ private:
+  std::filesystem::path path_;
+};
+
+mode_t mode_of(const std::filesystem::path& path) {
+  struct stat status {};
+  EXPECT_EQ(::lstat(path.c_str(), &status), 0) << path;
+  return status.st_mode & ACCESSPERMS;
+}
+
+TEST(LocalBus, BitRatesMustAgree) {
+  const std::string name = "local:" + unique_name();
+  const auto bus = open(name + "?bitrate=500000");
+  EXPECT_EQ(refusal(name), "(opened)") << "no wish of its own";
+  EXPECT_EQ(refusal(name + "?bitrate=500000"), "(opened)");
+  EXPECT_EQ(
+      refusal(name + "?bitrate=250000"),
+      name + "?bitrate=250000 (it runs at 500000 bit/s): the bus already runs at another bit rate");
+}
+
+TEST(LocalBus, ABusWithoutABitRateDoesNotGetOneLater) {
+  const std::string name = "local:" + unique_name();
+  const auto bus = open(name);
+  EXPECT_EQ(
+      refusal(name + "?bitrate=250000"),
+      name +
+          "?bitrate=250000 (it runs without a bit rate): the bus already runs at another bit rate");
+}
+
+TEST(LocalBus, TheBitRateOutlivesTheHub) {
+  const std::string name = "local:" + unique_name();
+  auto first = open(name + "?bitrate=125000");
+  const auto second = open(name);
+  first.reset();
+  // The second has no rate in its name, and takes the bus over with the one it ran at.
+  while (second->statistics().outages == 0 || second->state() == BusState::absent) {
+    ::usleep(1000);
+  }
+  EXPECT_EQ(refusal(name + "?bitrate=125000"), "(opened)");
+  EXPECT_NE(refusal(name + "?bitrate=500000"), "(opened)");
+}
+
+TEST(LocalBus, IsForThisUserAlone) {
+  const RuntimeFolder folder(unique_name());
+  const auto bus = open("local:mine");
+  EXPECT_EQ(mode_of(folder.path()), mode_t{0700});
+  EXPECT_EQ(mode_of(folder.path() / "mine.sock"), mode_t{0600});
+}
+
+TEST(LocalBus, AFolderOpenToOthersIsRefused) {
+  const RuntimeFolder folder(unique_name());
+  std::filesystem::create_directory(folder.path());
+  std::filesystem::permissions(folder.path(), std::filesystem::perms::all);
+  EXPECT_EQ(refusal("local:mine"), folder.path().string() +
+                                       ": expected a folder of this user's with mode 0700: the bus "
+                                       "belongs to another user");
+}
+
+TEST(LocalBus, AFolderThatIsALinkIsRefused) {
+  const RuntimeFolder folder(unique_name());
+  std::filesystem::create_symlink("/tmp", folder.path());
+  EXPECT_NE(refusal("local:mine"), "(opened)");
+}
+
+TEST(LocalBus, APathTooLongForASocketIsAnError) {
+  const RuntimeFolder folder(unique_name() + std::string(80, 'x'));
+  EXPECT_NE(refusal("local:mine").find("File name too long"), std::string::npos);
+}
+
+TEST(LocalBus, TheSocketOfAKilledHubIsCleanedUp) {
+  const RuntimeFolder folder(unique_name());
+  {
+    Peer hub({"hold", "local:stale"});
+    ASSERT_EQ(hub.line(), "open");
+    hub.kill();
+  }
+  ASSERT_TRUE(std::filesystem::exists(folder.path() / "stale.sock"));
+  { const auto bus = open("local:stale"); }
+  EXPECT_FALSE(std::filesystem::exists(folder.path() / "stale.sock"));
+}
+
+TEST(LocalBus, AFileInTheSocketsPlaceIsReplaced) {
+  const RuntimeFolder folder(unique_name());
+  std::filesystem::create_directory(folder.path());
+  std::filesystem::permissions(folder.path(), std::filesystem::perms::owner_all);
+  std::ofstream(folder.path() / "odd.sock") << "no socket";
+  EXPECT_EQ(refusal("local:odd"), "(opened)");
+}
+
+// The hub's stamps, not this process's clock: a busy machine cannot disturb them.
+TEST(LocalBus, SaturatedBusRunsAtExactlyItsBitRate) {
+  const std::string url = "local:" + unique_name() + "?bitrate=125000";
+  const auto receiver = open(url);
+  const auto sender = open(url, {.send_only = true});
+  std::vector<Frame> frames(40, Frame{0x1004A00A, FrameKind::extended, 8, {}});
+  for (std::size_t i = 0; i < frames.size(); ++i) {
+    frames[i].data[0] = static_cast<std::uint8_t>(i * 37);
+  }
+  ASSERT_EQ(sender->send(frames, 30s).result, Result::ok);
+  std::vector<Received> received(frames.size());
+  for (Received& frame : received) {
+    ASSERT_EQ(receiver->receive(frame, 30s), Result::ok);
+  }
+  constexpr std::int64_t bit_ns = 8000;
+  // Neighbours in one batch of the hub's share its clock reading exactly; the sum tells the rate.
+  std::int64_t bits = 0;
+  for (std::size_t i = 1; i < frames.size(); ++i) {
+    bits += wire_bits(frames[i]);
+  }
+  const auto took = (received.back().time - received.front().time).count();
+  EXPECT_NEAR(static_cast<double>(took), static_cast<double>(bits * bit_ns), 20'000.0);
+}
+
+}  // namespace
+}  // namespace roio
