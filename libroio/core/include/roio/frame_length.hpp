@@ -48,7 +48,7 @@ class StuffCounter {
     while (width-- > 0) {
       const uint8_t bit = (value >> width) & 1U;
       const uint8_t feedback = bit ^ static_cast<uint8_t>((crc_ >> 14) & 1U);
-      crc_ = static_cast<uint16_t>((crc_ << 1) & 0x7FFFU);
+      crc_ = static_cast<uint16_t>((unsigned{crc_} << 1) & 0x7FFFU);
       if (feedback) {
         crc_ ^= crc_polynomial;
       }
