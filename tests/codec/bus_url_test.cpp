@@ -1,0 +1,146 @@
+#include <gtest/gtest.h>
+
+#include "parsing.hpp"
+
+namespace roio {
+namespace {
+
+using test::Refusal;
+using test::verdict;
+using Kind = BusUrl::Kind;
+
+struct UrlCase {
+  const char* why;
+  std::string text;
+  Kind kind;
+  std::string target;
+  std::optional<std::uint32_t> bitrate;
+};
+
+TEST(BusUrlText, IsRead) {
+  const std::string name_64(64, 'n');
+  const UrlCase cases[] = {
+      {"interface alone", "can0", Kind::socketcan, "can0", {}},
+      {"interface with its kind", "socketcan:can0", Kind::socketcan, "can0", {}},
+      {"named as a kind", "socketcan:local", Kind::socketcan, "local", {}},
+      {"a kind's name without a colon is an interface", "local", Kind::socketcan, "local", {}},
+      {"one byte", "c", Kind::socketcan, "c", {}},
+      {"fifteen bytes", "can456789abcdef", Kind::socketcan, "can456789abcdef", {}},
+      {"any other byte", "can-0.1_\xC3\xA4", Kind::socketcan, "can-0.1_\xC3\xA4", {}},
+      {"local", "local:robot", Kind::local, "robot", {}},
+      {"local, every kind of character", "local:A.z_0-9.", Kind::local, "A.z_0-9.", {}},
+      {"64 bytes", "local:" + name_64, Kind::local, name_64, {}},
+      {"slowest", "local:robot?bitrate=1000", Kind::local, "robot", 1000},
+      {"fastest", "local:robot?bitrate=1000000", Kind::local, "robot", 1000000},
+      {"serial", "serial:/dev/ttyACM0", Kind::serial, "/dev/ttyACM0", {}},
+      {"serial with options", "serial:/dev/ttyACM0?baud=1000000", Kind::serial, "/dev/ttyACM0", {}},
+  };
+  for (const UrlCase& row : cases) {
+    const auto parsed = parse_bus_url(row.text);
+    ASSERT_EQ(verdict(parsed), "ok") << row.why;
+    EXPECT_EQ(parsed->kind, row.kind) << row.why;
+    EXPECT_EQ(parsed->target, row.target) << row.why;
+    EXPECT_EQ(parsed->bitrate, row.bitrate) << row.why;
+  }
+}
+
+void expect_refused(const Refusal& row) {
+  const auto parsed = parse_bus_url(row.text);
+  ASSERT_EQ(verdict(parsed), "bus " + row.message) << row.why;
+  EXPECT_EQ(parsed.error().offset, row.offset) << row.why;
+}
+
+TEST(BusUrlText, InterfaceRefusedInWords) {
+  const Refusal cases[] = {
+      {"empty", "", R"("": empty; expected an interface such as can0, or local:NAME)", 0},
+      {"unknown kind", "tcp:host",
+       R"("tcp:host": unknown kind of bus "tcp"; expected an interface such as can0, or local:NAME)",
+       0},
+      {"kinds are lower case", "LOCAL:robot",
+       R"("LOCAL:robot": unknown kind of bus "LOCAL"; )"
+       R"(expected an interface such as can0, or local:NAME)",
+       0},
+      {"no kind", ":can0",
+       R"(":can0": unknown kind of bus ""; expected an interface such as can0, or local:NAME)", 0},
+      {"no interface", "socketcan:",
+       R"("socketcan:": an interface name of 0 bytes; expected 1..15, such as can0)", 10},
+      {"sixteen bytes", "can456789abcdef0",
+       R"("can456789abcdef0": an interface name of 16 bytes; expected 1..15, such as can0)", 0},
+      {"a path", "/dev/can0", R"("/dev/can0": "/" is not allowed in an interface name)", 0},
+      {"a space", "socketcan:can 0",
+       R"("socketcan:can 0": " " is not allowed in an interface name)", 13},
+      {"a zero byte, which would end it", std::string("can\0x", 5),
+       R"("can\x00x": "\x00" is not allowed in an interface name)", 3},
+      {"a second colon", "socketcan:can:0",
+       R"("socketcan:can:0": ":" is not allowed in an interface name)", 13},
+      {"this folder", ".", R"(".": not an interface name; expected one such as can0)", 0},
+      {"the folder above", "socketcan:..",
+       R"("socketcan:..": not an interface name; expected one such as can0)", 10},
+      {"options", "can0?bitrate=500000",
+       R"("can0?bitrate=500000": an interface takes no options here; )"
+       R"(`ip link set` sets its bit rate and the rest)",
+       4},
+      {"an option with a colon", "can0?x:y",
+       R"("can0?x:y": an interface takes no options here; )"
+       R"(`ip link set` sets its bit rate and the rest)",
+       4},
+      {"no device", "serial:?baud=9600",
+       R"("serial:?baud=9600": no device; expected one such as /dev/ttyACM0)", 7},
+  };
+  for (const Refusal& row : cases) {
+    expect_refused(row);
+  }
+}
+
+TEST(BusUrlText, LocalRefusedInWords) {
+  const Refusal cases[] = {
+      {"no name", "local:", R"("local:": a bus name of 0 bytes; expected 1..64, such as robot)", 6},
+      {"no name but options", "local:?bitrate=1000",
+       R"("local:?bitrate=1000": a bus name of 0 bytes; expected 1..64, such as robot)", 6},
+      {"65 bytes", "local:" + std::string(65, 'n'),
+       R"("local:nnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnn..." (71 bytes): )"
+       R"(a bus name of 65 bytes; expected 1..64, such as robot)",
+       6},
+      {"a path", "local:../x",
+       R"("local:../x": "/" is not allowed in a bus name; )"
+       R"(expected letters, digits, '.', '_', '-')",
+       8},
+      {"hidden", "local:.robot", R"("local:.robot": a bus name must not start with a dot)", 6},
+      {"empty options", "local:robot?",
+       R"("local:robot?": an option without a name; expected bitrate=BPS)", 12},
+      {"unknown option", "local:robot?speed=5",
+       R"("local:robot?speed=5": unknown option "speed"; expected bitrate=BPS)", 12},
+      {"no value", "local:robot?bitrate",
+       R"("local:robot?bitrate": option bitrate has no value; expected bitrate=BPS)", 12},
+      {"empty value", "local:robot?bitrate=",
+       R"("local:robot?bitrate=": bitrate ""; )"
+       R"(expected 1000..1000000 (bit/s), without leading zeros)",
+       20},
+      {"too slow", "local:robot?bitrate=999",
+       R"("local:robot?bitrate=999": bitrate "999"; )"
+       R"(expected 1000..1000000 (bit/s), without leading zeros)",
+       20},
+      {"too fast", "local:robot?bitrate=1000001",
+       R"("local:robot?bitrate=1000001": bitrate "1000001"; )"
+       R"(expected 1000..1000000 (bit/s), without leading zeros)",
+       20},
+      {"kilo", "local:robot?bitrate=500k",
+       R"("local:robot?bitrate=500k": bitrate "500k"; )"
+       R"(expected 1000..1000000 (bit/s), without leading zeros)",
+       20},
+      {"past 32 bits", "local:robot?bitrate=4294968296",
+       R"("local:robot?bitrate=4294968296": bitrate "4294968296"; )"
+       R"(expected 1000..1000000 (bit/s), without leading zeros)",
+       20},
+      {"repeated", "local:r?bitrate=1000&bitrate=1000",
+       R"("local:r?bitrate=1000&bitrate=1000": option bitrate is given twice)", 21},
+      {"trailing ampersand", "local:r?bitrate=1000&",
+       R"("local:r?bitrate=1000&": an option without a name; expected bitrate=BPS)", 21},
+  };
+  for (const Refusal& row : cases) {
+    expect_refused(row);
+  }
+}
+
+}  // namespace
+}  // namespace roio
