@@ -186,6 +186,11 @@ Message parse_message(const SendWords& words, Address source) {
   return message;
 }
 
+std::string parse_bus(const std::string& text) {
+  static_cast<void>(value_or_refuse(parse_bus_url(text)));
+  return text;
+}
+
 SendOptions parse_send(const SendWords& words) {
   constexpr std::uint64_t most = std::numeric_limits<std::uint32_t>::max();
   if (words.bus.empty()) {
@@ -195,7 +200,7 @@ SendOptions parse_send(const SendWords& words) {
     refuse("send", "expected DEST after BUS: SUBNET.NODE, SUBNET.* or -");
   }
   SendOptions options;
-  options.bus = words.bus;
+  options.bus = parse_bus(words.bus);
   if (words.from->count() > 0) {
     options.source = value_or_refuse(parse_source(words.from_text), "--from: ");
   }
@@ -253,7 +258,7 @@ DumpOptions parse_dump(const DumpWords& words) {
     throw UsageError("expected either --log or --json, not both");
   }
   DumpOptions options;
-  options.bus = words.bus;
+  options.bus = parse_bus(words.bus);
   options.filters = words.filters;
   if (words.count->count() > 0) {
     options.count =
@@ -328,6 +333,9 @@ Command parse_command_line(int argc, const char* const* argv) {
     app.parse(argc, argv);
   } catch (const CLI::CallForHelp&) {
     return Information{app.help()};
+  } catch (const CLI::ArgumentMismatch& error) {
+    const std::string_view what = error.what();
+    throw UsageError(std::string(what.substr(0, what.find(':'))) + ": expected a value after it");
   } catch (const CLI::ParseError& error) {
     const auto parsed = app.get_subcommands();
     refuse(parsed.empty() ? "" : parsed.front()->get_name(), error.what());

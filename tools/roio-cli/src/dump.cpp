@@ -47,12 +47,18 @@ std::unique_ptr<RecordFormat> make_format(const DumpOptions& options) {
 class Dump {
  public:
   Dump(const DumpOptions& options, Bus& bus)
-      : options_(options), bus_(bus), format_(make_format(options)), batch_(batch_size) {}
+      : options_(options),
+        bus_(bus),
+        format_(make_format(options)),
+        batch_(batch_size),
+        is_local_(bus.name().starts_with("local:")) {}
 
   int run() {
     last_shown_ = Clock::now();
     while (!finished() && receive()) {
-      announce_changes();
+      if (Clock::now() >= next_look_) {
+        announce_changes();
+      }
       flush(out_);
     }
     flush(out_);
@@ -101,8 +107,22 @@ class Dump {
     ++shown_;
   }
 
+  // Asks the kernel, so not after every batch.
   void announce_changes() {
     const BusState state = bus_.state();
+    const std::uint64_t outages = bus_.statistics().outages;
+    const bool is_out = state == BusState::down || state == BusState::absent;
+    // An outage that began and ended between two looks; on a local bus, another process has become
+    // the hub and nothing is lost by it.
+    if (outages != outages_ && !is_out && !is_local_) {
+      announce(BusState::down);
+    }
+    announce(state);
+    outages_ = outages;
+    next_look_ = Clock::now() + look_around_every;
+  }
+
+  void announce(BusState state) {
     if (state != state_) {
       format_->state(out_, state);
       state_ = state;
@@ -132,6 +152,9 @@ class Dump {
   std::vector<Received> batch_;
   Buffer out_;
   BusState state_ = BusState::active;
+  bool is_local_;
+  std::uint64_t outages_ = 0;
+  Clock::time_point next_look_;  // at once: the bus may be down from the start
   std::uint64_t shown_ = 0;
   std::uint64_t announced_lost_ = 0;
   Clock::time_point last_shown_;

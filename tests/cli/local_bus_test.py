@@ -1,0 +1,385 @@
+#!/usr/bin/env python3
+"""roio-cli on local buses: what send sends, dump shows, in every form; endings and signals."""
+
+import json
+import os
+import pty
+import select
+import signal
+import subprocess
+import time
+
+from driver import CLI, GUARD, CliTest, main
+
+BUS = "local:robot"
+
+
+class SendTest(CliTest):
+    def shown(self, *arguments, stdin="", form=()):
+        """What dump shows of one send."""
+        dump = self.dump("-n", "1", *form, BUS)
+        self.send(*arguments, stdin=stdin)
+        status, out, err = dump.result()
+        self.assertEqual((status, err), (0, ""))
+        return out
+
+    def test_every_way_to_say_a_message(self):
+        bytes_5a2d00 = "0.10   -> 0.2     normal  message  [3]  5A 2D 00\n"
+        for arguments, line in [
+            (["0.2", "5A2D00"], bytes_5a2d00),
+            (["0.2", "5a.2d.00"], bytes_5a2d00),
+            (["0.2", "--dec", "90", "45", "0"], bytes_5a2d00),
+            (["--dec", "0.2", "90", "45", "0"], bytes_5a2d00),
+            (["0.2"], "0.10   -> 0.2     normal  message  [0]\n"),
+            (["0.2", ""], "0.10   -> 0.2     normal  message  [0]\n"),
+            (["0.*", "01"], "0.10   -> 0.*     normal  message  [1]  01\n"),
+            (["0.255", "01"], "0.10   -> 0.*     normal  message  [1]  01\n"),
+            (["31.254", "0102030405060708"],
+             "0.10   -> 31.254  normal  message  [8]  01 02 03 04 05 06 07 08\n"),
+            (["--urgent", "0.2", "01"], "0.10   -> 0.2     urgent  message  [1]  01\n"),
+            (["--from", "31.254", "0.2", "01"], "31.254 -> 0.2     normal  message  [1]  01\n"),
+            (["--class", "message", "0.2", "01"], "0.10   -> 0.2     normal  message  [1]  01\n"),
+            (["--class", "system", "0.2", "01"], "0.10   -> 0.2     normal  system   [1]  01\n"),
+            (["--class=stream", "0.2", "01"], "0.10   -> 0.2     normal  stream   [1]  01\n"),
+        ]:
+            with self.subTest(arguments):
+                options = [word for word in arguments if word.startswith("--")]
+                if options and arguments[0] == options[0]:  # options first: the bus goes after them
+                    at = 1 if options[0] in ("--urgent", "--dec") or "=" in options[0] else 2
+                else:
+                    at = 0
+                self.assertEqual(self.shown(*arguments[:at], BUS, *arguments[at:]), line)
+
+    def test_count_sends_as_often(self):
+        dump = self.dump("-T", "300", BUS)
+        self.send("--count", "100", BUS, "0.2", "01")
+        self.assertEqual(
+            dump.result(), (0, "0.10   -> 0.2     normal  message  [1]  01\n" * 100, "")
+        )
+
+    def test_interval_spaces_the_messages_out(self):
+        dump = self.dump("-n", "3", "--log", BUS)
+        self.send("--count", "3", "--interval", "50", BUS, "0.2", "01")
+        out, _ = dump.process.communicate(timeout=GUARD)
+        times = [float(line[1 : line.index(")")]) for line in out.splitlines()]
+        # Sleeping too long is the machine's affair; too short would be ours. The hub's clock takes
+        # the time some way behind.
+        self.assertGreater(times[2] - times[0], 0.050)
+
+    def test_count_zero_goes_on_until_interrupted(self):
+        dump = self.dump("-n", "5", BUS)
+        sender = subprocess.Popen(
+            [CLI, "send", "--count", "0", "--interval", "5", BUS, "0.2", "01"],
+            stderr=subprocess.PIPE, text=True,
+        )
+        self.assertEqual(dump.result()[0], 0)
+        sender.send_signal(signal.SIGINT)
+        _, err = sender.communicate(timeout=GUARD)
+        self.assertEqual(sender.returncode, 128 + signal.SIGINT)
+        self.assertRegex(err, r"^roio-cli: local:robot: \d+ messages sent\n$")
+
+
+MESSAGE = {"type": "Roio", "isBroadcast": False, "address": 2, "subnet": 0, "messageLength": 1,
+           "data": [7]}
+
+
+class StdinTest(CliTest):
+    def test_json_and_log_lines_carry_their_own_destination(self):
+        dump = self.dump("-n", "4", BUS)
+        broadcast = dict(MESSAGE, isBroadcast=True, priority="urgent", source="0.3")
+        del broadcast["address"]
+        self.send(
+            "--from", "1.9", BUS, "-",
+            # The urgent one first: a bus would let it pass.
+            stdin=json.dumps(broadcast) + "\n\n" + json.dumps(MESSAGE) + "\n"
+            "(1436509052.249713) can0 1000400A#5A2D00\n"
+            "(1436509052.249714) can0 123#1122",
+        )
+        self.assertEqual(
+            dump.result(),
+            (0,
+             "0.3    -> 0.*     urgent  message  [1]  07\n"
+             "1.9    -> 0.2     normal  message  [1]  07\n"
+             "0.10   -> 0.2     normal  message  [3]  5A 2D 00\n"
+             "foreign  11-bit 123                [2]  11 22\n",
+             ""),
+        )
+
+    def test_a_bad_line_is_named_and_the_others_are_sent(self):
+        dump = self.dump("-n", "2", BUS)
+        result = self.run_cli(
+            "send", BUS, "-",
+            stdin=json.dumps(MESSAGE) + "\n"
+            "hello\n"
+            + json.dumps(dict(MESSAGE, data=[256])) + "\n"
+            "(1436509052.249713) can0 123##11122\n"
+            "\n" + "x" * 70000 + "\n" + json.dumps(MESSAGE) + "\n",
+        )
+        self.assertEqual(result[:2], (1, ""))
+        lines = result[2].splitlines()
+        self.assertEqual(
+            lines[0],
+            'roio-cli: line 2: expected a JSON message {"type":"Roio",...} or a line of a log '
+            '"(TIME) BUS ID#DATA"',
+        )
+        self.assertEqual(
+            lines[1],
+            'roio-cli: line 3: JSON field "data": 256 at index 0; expected integers 0..255',
+        )
+        self.assertRegex(lines[2], r"^roio-cli: line 4: .*CAN FD")
+        self.assertEqual(lines[3], "roio-cli: line 6: expected a line of at most 65536 bytes")
+        self.assertEqual(lines[4:], ["roio-cli: local:robot: 2 messages sent, 4 lines refused"])
+        self.assertEqual(
+            dump.result(), (0, "0.10   -> 0.2     normal  message  [1]  07\n" * 2, "")
+        )
+
+    def test_nothing_to_read_is_nothing_to_send(self):
+        self.send(BUS, "-", stdin="")
+
+    def test_a_line_is_sent_when_it_comes_not_when_the_input_ends(self):
+        dump = self.dump("-n", "1", BUS)
+        sender = subprocess.Popen([CLI, "send", BUS, "-"], stdin=subprocess.PIPE, text=True)
+        sender.stdin.write(json.dumps(MESSAGE) + "\n")
+        sender.stdin.flush()
+        self.assertEqual(dump.result()[1], "0.10   -> 0.2     normal  message  [1]  07\n")
+        sender.stdin.close()
+        self.assertEqual(sender.wait(GUARD), 0)
+
+    def test_a_signal_ends_the_wait_for_input(self):
+        for number in (signal.SIGINT, signal.SIGTERM):
+            sender = subprocess.Popen(
+                [CLI, "send", BUS, "-"], stdin=subprocess.PIPE, stderr=subprocess.PIPE, text=True
+            )
+            dump = self.dump("-n", "1", BUS)
+            sender.stdin.write(json.dumps(MESSAGE) + "\n")
+            sender.stdin.flush()
+            self.assertEqual(dump.result()[0], 0)
+            sender.send_signal(number)
+            self.assertEqual(sender.wait(GUARD), 128 + number)
+            self.assertEqual(sender.stderr.read(), "roio-cli: local:robot: 1 message sent\n")
+            sender.stdin.close()
+            sender.stderr.close()
+
+    def test_what_dump_writes_send_reads(self):
+        for form in ("--json", "--log"):
+            dump = self.dump("-n", "2", form, BUS)
+            self.send("--urgent", BUS, "0.*", "0102")
+            self.send("--class", "system", "--from", "3.4", BUS, "0.2")
+            out, _ = dump.process.communicate(timeout=GUARD)
+            again = self.dump("-n", "2", BUS)
+            self.send(BUS, "-", stdin=out)
+            self.assertEqual(
+                again.result(),
+                (0,
+                 "0.10   -> 0.*     urgent  message  [2]  01 02\n"
+                 "3.4    -> 0.2     normal  system   [0]\n",
+                 ""),
+            )
+
+    def test_ten_thousand_lines_arrive_in_order(self):
+        count = 10000
+        dump = self.dump("-n", str(count), "--log", BUS)
+        lines = [f"(1436509052.000000) robot 1000400A#{i:08X}" for i in range(count)]
+        self.send(BUS, "-", stdin="\n".join(lines))
+        status, out, err = dump.result()
+        self.assertEqual((status, err), (0, ""))
+        self.assertEqual(
+            [line.split()[2] for line in out.splitlines()], [line.split()[2] for line in lines]
+        )
+
+
+class FormTest(CliTest):
+    def shown(self, *options):
+        dump = self.dump("-n", "3", *options, BUS)
+        self.send(BUS, "0.2", "5A2D00")
+        self.send(BUS, "-", stdin="(1.000000) x 123#R4\n(1.000000) x 1C00400A#11\n")
+        status, out, err = dump.result()
+        self.assertEqual((status, err), (0, ""))
+        return out
+
+    def test_readable(self):
+        self.assertEqual(
+            self.shown(),
+            "0.10   -> 0.2     normal  message  [3]  5A 2D 00\n"
+            "foreign  11-bit 123                [4]  remote request\n"
+            "foreign  29-bit 1C00400A           [1]  11  (reserved class)\n",
+        )
+
+    def test_times(self):
+        for mode, stamp in (("a", "(0000000000.000000)"), ("d", "(000.000000)"),
+                            ("z", "(000.000000)")):
+            self.assertEqual(
+                self.shown("-t", mode),
+                f"{stamp} 0.10   -> 0.2     normal  message  [3]  5A 2D 00\n"
+                f"{stamp} foreign  11-bit 123                [4]  remote request\n"
+                f"{stamp} foreign  29-bit 1C00400A           [1]  11  (reserved class)\n",
+            )
+
+    def test_log_names_the_bus_without_its_kind(self):
+        self.assertEqual(
+            self.shown("--log"),
+            "(0000000000.000000) robot 1000400A#5A2D00\n"
+            "(0000000000.000000) robot 123#R4\n"
+            "(0000000000.000000) robot 1C00400A#11\n",
+        )
+
+    def test_json(self):
+        self.assertEqual(
+            self.shown("--json"),
+            '{"type":"Roio","isBroadcast":false,"address":2,"subnet":0,"messageLength":3,'
+            '"data":[90,45,0],"source":"0.10","timestamp":0}\n'
+            '{"type":"CAN","kind":"standard-remote","id":291,"length":4,"data":[],"timestamp":0}\n'
+            '{"type":"CAN","kind":"extended","id":469778442,"length":1,"data":[17],"timestamp":0}\n',
+        )
+
+    def test_no_foreign_hides_and_does_not_count_them(self):
+        dump = self.dump("-n", "2", "--no-foreign", BUS)
+        self.send(BUS, "0.2", "01")
+        self.send(BUS, "-", stdin="(1.0) x 123#\n(1.0) x 1C00400A#11\n(1.0) x 1000400A#R\n")
+        self.send(BUS, "0.2", "02")
+        self.assertEqual(
+            dump.result(),
+            (0,
+             "0.10   -> 0.2     normal  message  [1]  01\n"
+             "0.10   -> 0.2     normal  message  [1]  02\n",
+             ""),
+        )
+
+    def test_filters_let_through_what_they_say(self):
+        traffic = [
+            (["0.2", "01"], "to=0.2"),
+            (["0.*", "02"], "to=0.*"),
+            (["--from", "0.3", "1.4", "03"], "from=0.3"),
+            (["--urgent", "1.5", "04"], "urgent"),
+            (["--class", "system", "1.6", "05"], "class=system"),
+        ]
+        for _, word in traffic:
+            with self.subTest(word):
+                dump = self.dump("-T", "300", "--log", BUS, word)
+                for arguments, _ in traffic:
+                    at = next(i for i, w in enumerate(arguments) if w[0].isdigit() and
+                              (i == 0 or arguments[i - 1] != "--from"))
+                    self.send(*arguments[:at], BUS, *arguments[at:])
+                number = 1 + [word for _, word in traffic].index(word)
+                status, out, err = dump.result()
+                self.assertEqual((status, err), (0, ""))
+                self.assertEqual([line[-2:] for line in out.splitlines()], [f"{number:02}"])
+
+
+class EndTest(CliTest):
+    def test_count_reached_is_success_and_the_rest_is_left(self):
+        dump = self.dump("-n", "2", BUS)
+        self.send("--count", "5", BUS, "0.2", "01")
+        self.assertEqual(dump.result(), (0, "0.10   -> 0.2     normal  message  [1]  01\n" * 2, ""))
+        self.assertEqual(dump.counts, "roio-cli: local:robot: 2 frames shown, 0 lost\n")
+
+    def test_quiet_time_is_success(self):
+        self.assertEqual(self.run_cli("dump", "-T", "50", BUS), (0, "", ""))
+
+    def test_quiet_time_before_the_count_is_failure(self):
+        self.assertEqual(
+            self.run_cli("dump", "-n", "2", "-T", "50", BUS),
+            (1, "", "roio-cli: local:robot: 0 of 2 frames came in time\n"),
+        )
+
+    def test_quiet_time_begins_again_with_each_frame(self):
+        dump = self.dump("-T", "1000", BUS)
+        self.send("--count", "4", "--interval", "400", BUS, "0.2", "01")
+        self.assertEqual(dump.result(), (0, "0.10   -> 0.2     normal  message  [1]  01\n" * 4, ""))
+
+    def test_signals_end_it_cleanly(self):
+        for number in (signal.SIGINT, signal.SIGTERM):
+            dump = self.dump("-n", "100", BUS)
+            self.send(BUS, "0.2", "01")
+            line = dump.line()
+            dump.signal(number)
+            self.assertEqual(dump.result(), (128 + number, "", ""))
+            self.assertEqual(line, "0.10   -> 0.2     normal  message  [1]  01\n")
+
+    def test_a_frame_is_shown_at_once_also_into_a_pipe(self):
+        dump = self.dump(BUS)
+        for _ in range(3):
+            self.send(BUS, "0.2", "01")
+            self.assertTrue(select.select([dump.process.stdout], [], [], GUARD)[0])
+            self.assertEqual(dump.line(), "0.10   -> 0.2     normal  message  [1]  01\n")
+
+    def test_a_reader_that_goes_away_ends_it_without_a_word(self):
+        for traffic in (True, False):
+            with self.subTest(traffic=traffic):
+                dump = self.dump(BUS)
+                dump.process.stdout.close()
+                if traffic:
+                    self.send(BUS, "0.2", "01")
+                self.assertEqual(dump.process.wait(GUARD), 128 + signal.SIGPIPE)
+                self.assertEqual(dump.process.stderr.read(), "")
+                dump.process.stdout = None
+
+    def test_an_output_that_cannot_be_written_is_a_failure(self):
+        with open("/dev/full", "w") as full:
+            dump = self.dump(BUS, stdout=full)
+            self.send(BUS, "0.2", "01")
+            self.assertEqual(
+                dump.result(), (1, "", "roio-cli: standard output: No space left on device\n")
+            )
+
+    def test_the_lines_of_a_flood_are_whole_when_a_signal_comes(self):
+        with open(self.path("log"), "w") as log:
+            dump = self.dump("--log", BUS, stdout=log)
+            sender = subprocess.Popen(
+                [CLI, "send", "--count", "0", BUS, "0.2", "0102030405060708"],
+                stderr=subprocess.DEVNULL,
+            )
+            while os.path.getsize(self.path("log")) < 100000:
+                time.sleep(0.01)
+            dump.signal(signal.SIGTERM)
+            self.assertEqual(dump.process.wait(GUARD), 128 + signal.SIGTERM)
+            sender.terminate()
+            sender.wait(GUARD)
+        with open(self.path("log")) as log:
+            for line in log:
+                self.assertRegex(line, r"^\(\d{10}\.\d{6}\) robot 1000400A#0102030405060708\n$")
+
+
+class HubTest(CliTest):
+    def test_a_hub_that_is_killed_goes_unnoticed(self):
+        hub = self.dump(BUS)
+        other = self.dump("-n", "2", BUS)
+        self.send(BUS, "0.2", "01")
+        hub.process.kill()
+        hub.process.wait(GUARD)
+        self.send(BUS, "0.2", "02")
+        self.assertEqual(
+            other.result(),
+            (0,
+             "0.10   -> 0.2     normal  message  [1]  01\n"
+             "0.10   -> 0.2     normal  message  [1]  02\n",
+             ""),
+        )
+
+
+class ColourTest(CliTest):
+    def on_a_terminal(self, **variables):
+        """What dump writes to a terminal of one urgent message."""
+        main_end, terminal = pty.openpty()
+        env = {k: v for k, v in os.environ.items() if k not in ("NO_COLOR", "TERM")}
+        env.update({"TERM": "xterm"}, **variables)
+        dump = self.dump("-n", "1", BUS, env=env, stdout=terminal)
+        self.send("--urgent", BUS, "0.2", "01")
+        self.assertEqual(dump.process.wait(GUARD), 0)
+        os.close(terminal)
+        text = os.read(main_end, 1000).decode()
+        os.close(main_end)
+        return text
+
+    def test_only_on_a_terminal_that_wants_it(self):
+        plain = "0.10   -> 0.2     urgent  message  [1]  01\r\n"
+        self.assertEqual(
+            self.on_a_terminal(), "\033[1;33m0.10   -> 0.2     urgent  message  [1]  01\033[0m\r\n"
+        )
+        self.assertEqual(self.on_a_terminal(NO_COLOR="1"), plain)
+        self.assertEqual(self.on_a_terminal(TERM="dumb"), plain)
+        self.assertNotEqual(self.on_a_terminal(NO_COLOR=""), plain)  # no-color.org: when not empty
+
+
+if __name__ == "__main__":
+    main()

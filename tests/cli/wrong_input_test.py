@@ -1,0 +1,146 @@
+#!/usr/bin/env python3
+"""Wrong command lines: each is one line on standard error that says what was expected, and exit 2."""
+
+from driver import CliTest, main
+
+SEND_HELP = "; `roio-cli send --help` shows how"
+DUMP_HELP = "; `roio-cli dump --help` shows how"
+WORDS = ("expected to=SUBNET.NODE, from=SUBNET.NODE, urgent, normal, class=message|system|stream, "
+         "ID:MASK, ID~MASK or the word or")
+
+# command line, the line on standard error
+WRONG = [
+    ("", "expected a command: send or dump; `roio-cli --help` shows how"),
+    ("snd local:x", 'unknown command "snd": expected send or dump; `roio-cli --help` shows how'),
+    ("--foo", 'unknown option "--foo"; `roio-cli --help` shows how'),
+    # send: what is missing
+    ("send", "expected BUS, DEST and DATA" + SEND_HELP),
+    ("send local:x", "expected DEST after BUS: SUBNET.NODE, SUBNET.* or -" + SEND_HELP),
+    ("send local:x 0.2 --count", "--count: expected a value after it"),
+    # send: the bus
+    ("send local: 0.2",
+     'bus "local:": a bus name of 0 bytes; expected 1..64, such as robot'),
+    ("send local:x?bitrate=999 0.2",
+     'bus "local:x?bitrate=999": bitrate "999"; expected 1000..1000000 (bit/s), without leading '
+     "zeros"),
+    ("send can0,123:7FF 0.2",
+     'bus "can0,123:7FF": unknown kind of bus "can0,123"; expected an interface such as can0, or '
+     "local:NAME"),
+    # send: addresses
+    ("send local:x 2 01",
+     'address "2": no dot; expected SUBNET.NODE, such as 0.2, or SUBNET.* for a broadcast'),
+    ("send local:x 0.256 01",
+     'address "0.256": node 256 is out of range; expected 0..254, or * for a broadcast'),
+    ("send local:x 32.0 01", 'address "32.0": subnet 32 is out of range; expected 0..31'),
+    ("send --from 0.* local:x 0.2 01",
+     '--from: address "0.*": a broadcast is no address of a node\'s own; expected node 0..254'),
+    # send: data
+    ("send local:x 0.2 5A2", 'data "5A2": odd number of hex digits; expected two per byte'),
+    ("send local:x 0.2 5G", 'data "5G": "G" is no hex digit'),
+    ("send local:x 0.2 010203040506070809",
+     'data "010203040506070809": 9 bytes; a frame carries at most 8'),
+    ("send local:x 0.2 01 02",
+     "DATA: expected one word of hexadecimal digits such as 5A2D00 (or --dec before decimal "
+     "numbers), found 2 words"),
+    ("send local:x 0.2 --dec 256",
+     'DATA with --dec: expected a whole number 0..255, found "256"'),
+    ("send local:x 0.2 --dec 5A",
+     'DATA with --dec: expected a whole number 0..255, found "5A"'),
+    ("send local:x 0.2 --dec 1 2 3 4 5 6 7 8 9", "DATA: expected at most 8 bytes, found 9"),
+    # send: options
+    ("send --form 0.3 local:x 0.2", 'unknown option "--form"' + SEND_HELP),
+    ("send --class fast local:x 0.2",
+     '--class: expected message, system or stream, found "fast"'),
+    ("send --class reserved local:x 0.2",
+     '--class: expected message, system or stream, found "reserved"'),
+    ("send --count ten local:x 0.2",
+     '--count: expected a whole number 0..4294967295, found "ten"'),
+    ("send --count 4294967296 local:x 0.2",
+     '--count: expected a whole number 0..4294967295, found "4294967296"'),
+    ("send --interval 10 local:x 0.2",
+     "--interval: expected with --count N (0: until interrupted)"),
+    ("send --timeout 0 local:x 0.2",
+     '--timeout: expected a whole number 1..86400000, found "0"'),
+    # send: lines from standard input say everything themselves
+    ("send local:x - 01",
+     "DATA: expected none after DEST -, as each line of the input has its own"),
+    ("send --urgent local:x -",
+     "--urgent: expected without DEST -, as each line of the input says its own"),
+    ("send --class system local:x -",
+     "--class: expected without DEST -, as each line of the input says its own"),
+    ("send --count 2 local:x -",
+     "--count: expected without DEST -, as each line of the input says its own"),
+    ("send --dec local:x -",
+     "--dec: expected without DEST -, as each line of the input says its own"),
+    # dump
+    ("dump", "expected BUS" + DUMP_HELP),
+    ("dump --colour local:x", 'unknown option "--colour"' + DUMP_HELP),
+    ("dump -n", "-n: expected a value after it"),
+    ("dump -n 0 local:x", '-n: expected a whole number 1..4294967295, found "0"'),
+    ("dump -T soon local:x", '-T: expected a whole number 1..86400000, found "soon"'),
+    ("dump -t b local:x", '-t: expected a (absolute), d (delta) or z (zero), found "b"'),
+    ("dump -t a --log local:x",
+     "-t: expected without --log and --json, which have a time of their own"),
+    ("dump --json --log local:x", "expected either --log or --json, not both"),
+    # dump: filters
+    ("dump local:x urgnet", 'bad filter "urgnet": ' + WORDS),
+    ("dump local:x to=0.2,urgent",
+     'bad filter "to=0.2,urgent": address "0.2,urgent": node "2,urgent" is not a number; expected '
+     "0..254, or * for a broadcast"),
+    ("dump local:x to=32.1",
+     'bad filter "to=32.1": address "32.1": subnet 32 is out of range; expected 0..31'),
+    ("dump local:x class=fast",
+     'bad filter "class=fast": class "fast": expected message, system, stream or reserved'),
+    ("dump local:x 123:XYZ",
+     'bad filter "123:XYZ": expected an identifier and a mask of 1 to 8 hexadecimal digits each, '
+     "such as 123:7FF or 1004A00A~1FFFFFFF"),
+    ("dump local:x or", 'bad filter "or": expected a filter on either side of it'),
+    ("dump local:x urgent 1:C00007FF",
+     'no frame can satisfy these filters together; put "or" between choices'),
+]
+
+
+class WrongInputTest(CliTest):
+    def test_each_is_one_line_and_exit_2(self):
+        for command_line, expected in WRONG:
+            with self.subTest(command_line):
+                self.assertEqual(
+                    self.run_cli(*command_line.split()), (2, "", "roio-cli: " + expected + "\n")
+                )
+
+    def test_an_interface_that_is_not_there(self):
+        status, out, err = self.run_cli("dump", "nosuch0")
+        self.assertEqual((status, out), (2, ""))
+        # Which of the two, the kernel of this machine decides.
+        self.assertRegex(err, r"^roio-cli: nosuch0: (no such network interface|this kernel has no "
+                              r"CAN); .*local:NAME.*\n$")
+
+    def test_a_bus_at_another_bit_rate(self):
+        self.dump("local:paced?bitrate=500000")
+        status, out, err = self.run_cli("send", "local:paced?bitrate=250000", "0.2")
+        self.assertEqual((status, out), (2, ""))
+        self.assertEqual(
+            err,
+            "roio-cli: local:paced?bitrate=250000 (it runs at 500000 bit/s): the bus already runs "
+            "at another bit rate\n",
+        )
+
+
+class InformationTest(CliTest):
+    def test_version(self):
+        status, out, err = self.run_cli("--version")
+        self.assertEqual((status, err), (0, ""))
+        self.assertRegex(out, r"^roio-cli \d+\.\d+\.\d+\n$")
+
+    def test_help_goes_to_standard_output_and_has_examples(self):
+        for command in ([], ["send"], ["dump"]):
+            for option in ("--help", "-h"):
+                status, out, err = self.run_cli(*command, option)
+                self.assertEqual((status, err), (0, ""))
+                self.assertIn("Usage: roio-cli " + " ".join(command), out)
+                self.assertIn("Examples:\n  roio-cli ", out)
+                self.assertLess(max(map(len, out.splitlines())), 100)
+
+
+if __name__ == "__main__":
+    main()
