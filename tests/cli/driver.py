@@ -25,9 +25,9 @@ class Dump:
     """A `roio-cli dump -v` that listens already. Its "listening" and its final count are checked here
     and taken out of what it says on standard error."""
 
-    def __init__(self, *arguments, env=None, stdout=subprocess.PIPE):
+    def __init__(self, *arguments, env=None, stdout=subprocess.PIPE, prefix=()):
         self.process = subprocess.Popen(
-            [CLI, "dump", "-v", *arguments],
+            [*prefix, CLI, "dump", "-v", *arguments],
             stdin=subprocess.DEVNULL,
             stdout=stdout,
             stderr=subprocess.PIPE,

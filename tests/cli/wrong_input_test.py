@@ -28,7 +28,7 @@ WRONG = [
      "local:NAME"),
     # send: addresses
     ("send local:x 2 01",
-     'address "2": no dot; expected SUBNET.NODE, such as 0.2, or SUBNET.* for a broadcast'),
+     'address "2": no dot; expected SUBNET.NODE, such as 0.2'),
     ("send local:x 0.256 01",
      'address "0.256": node 256 is out of range; expected 0..254, or * for a broadcast'),
     ("send local:x 32.0 01", 'address "32.0": subnet 32 is out of range; expected 0..31'),
