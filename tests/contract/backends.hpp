@@ -1,0 +1,36 @@
+/// The buses that the contract suite runs against. A further backend is a further row in
+/// backends.cpp.
+#ifndef ROIO_TESTS_CONTRACT_BACKENDS_HPP
+#define ROIO_TESTS_CONTRACT_BACKENDS_HPP
+
+#include <cstddef>
+#include <functional>
+#include <ostream>
+#include <string>
+#include <vector>
+
+namespace roio::test {
+
+struct Backend {
+  std::string name;
+  /// A URL of a bus that nobody else uses; the same bus each time only where there is but one.
+  std::function<std::string()> fresh_url;
+  bool arbitrates;        ///< Urgent frames pass normal ones that still wait.
+  bool paced;             ///< Frames take their time, so that a queue fills and send() waits.
+  bool one_order;         ///< All receivers see one and the same order.
+  std::size_t flood = 0;  ///< Frames that a receiver which does not read may well be too many for.
+};
+
+inline std::ostream& operator<<(std::ostream& out, const Backend& backend) {
+  return out << backend.name;
+}
+
+/// The local bus always; SocketCAN on the interface that the environment variable ROIO_TEST_CAN
+/// names, when it is set (that one bus is then every test's: run them one at a time).
+std::vector<Backend> backends();
+/// Those of them that have a trait.
+std::vector<Backend> backends_where(bool Backend::*trait);
+
+}  // namespace roio::test
+
+#endif
