@@ -155,7 +155,7 @@ TEST_F(HostileClient, NeverReadingCostsTheOthersNothing) {
   ASSERT_EQ(stopped.line(), "open");
   stopped.signal(SIGSTOP);
   constexpr std::uint64_t count = 150'000;  // more than a queue holds
-  std::thread reader([this] {
+  std::jthread reader([this] {
     std::array<Received, 256> batch;
     std::uint64_t got = 0;
     while (got < count) {
