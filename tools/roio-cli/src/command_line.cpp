@@ -70,7 +70,7 @@ std::uint64_t parse_number(const std::string& option, const std::string& text,
   const auto [end, error] = std::from_chars(text.data(), last, value);
   if (error != std::errc() || end != last || value < smallest || value > largest) {
     throw UsageError(option + ": expected a whole number " + std::to_string(smallest) + ".." +
-                     std::to_string(largest) + ", found \"" + text + "\"");
+                     std::to_string(largest) + ", found " + quote(text));
   }
   return value;
 }
@@ -169,7 +169,7 @@ void refuse_with_lines(const SendWords& words) {
 MessageClass parse_sendable_class(const std::string& text) {
   const auto message_class = parse_class(text);
   if (!message_class || *message_class == MessageClass::reserved) {
-    throw UsageError("--class: expected message, system or stream, found \"" + text + "\"");
+    throw UsageError("--class: expected message, system or stream, found " + quote(text));
   }
   return *message_class;
 }
@@ -245,7 +245,7 @@ struct DumpWords {
 
 TimeColumn::Mode parse_time_mode(const std::string& text) {
   if (text != "a" && text != "d" && text != "z") {
-    throw UsageError("-t: expected a (absolute), d (delta) or z (zero), found \"" + text + "\"");
+    throw UsageError("-t: expected a (absolute), d (delta) or z (zero), found " + quote(text));
   }
   return static_cast<TimeColumn::Mode>(text.front());
 }
@@ -290,9 +290,9 @@ void refuse_rest(const CLI::App& app, const std::string& command) {
     return;
   }
   if (rest.front().starts_with('-')) {
-    refuse(command, "unknown option \"" + rest.front() + "\"");
+    refuse(command, "unknown option " + quote(rest.front()));
   }
-  refuse(command, "unknown command \"" + rest.front() + "\": expected send or dump");
+  refuse(command, "unknown command " + quote(rest.front()) + ": expected send or dump");
 }
 
 /// CLI11's help, but for the first line, in which it would name every option's type.

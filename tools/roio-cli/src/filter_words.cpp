@@ -88,7 +88,7 @@ Cubes complement(const Cube& cube) {
 }
 
 ParseError bad_word(std::string_view word, std::string_view why) {
-  return {"bad filter \"" + std::string(word) + "\": " + std::string(why), 0};
+  return {"bad filter " + quote(word) + ": " + std::string(why), 0};
 }
 
 constexpr std::string_view expected_words =

@@ -40,6 +40,11 @@ class [[nodiscard]] Parsed {
   std::variant<T, ParseError> content_;
 };
 
+/// A text of any origin made fit for one line of an error message: in double quotes, with control
+/// characters and bytes that are no UTF-8 as \xNN (\n, \r, \t, \", \\ as in C), and cut off after
+/// about 48 bytes, saying how long it was.
+std::string quote(std::string_view text);
+
 /// Up to 8 data bytes.
 struct Bytes {
   std::array<std::uint8_t, max_data_length> data{};
