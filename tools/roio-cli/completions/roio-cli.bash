@@ -1,0 +1,87 @@
+# bash completion for roio-cli
+
+# CAN interfaces of this machine, and local buses that are running.
+_roio_cli_buses() {
+  local folder type socket
+  for folder in /sys/class/net/*; do
+    # 280: ARPHRD_CAN
+    read -r type 2>/dev/null <"$folder/type" && [ "$type" = 280 ] && echo "${folder##*/}"
+  done
+  for socket in "${ROIO_RUNTIME_DIR:-/tmp/roio-$UID}"/*.sock; do
+    socket=${socket##*/}
+    [ "$socket" = '*.sock' ] || echo "local:${socket%.sock}"
+  done
+}
+
+# How many words before the current one are arguments, not options or their values.
+_roio_cli_arguments_before() {
+  local index count=0
+  for ((index = 2; index < COMP_CWORD; ++index)); do
+    case ${COMP_WORDS[index]} in
+      --from | --class | --count | --interval | --timeout | -n | -T | -t) ((++index)) ;;
+      -?*) ;;
+      *) ((++count)) ;;
+    esac
+  done
+  echo "$count"
+}
+
+_roio_cli_words() {
+  local command=${COMP_WORDS[1]} previous=${COMP_WORDS[COMP_CWORD - 1]}
+  if [ "$COMP_CWORD" -eq 1 ]; then
+    echo send dump --help --version
+    return
+  fi
+  case $previous in
+    --class) echo message system stream; return ;;
+    -t) echo a d z; return ;;
+    --from | --count | --interval | --timeout | -n | -T) return ;;
+  esac
+  case $command:$current in
+    send:-*) echo --from --urgent --class --count --interval --timeout --dec --help; return ;;
+    dump:-*) echo -n -T -t --log --json --no-foreign --errors --verbose --help; return ;;
+    send:* | dump:*) ;;
+    *) return ;;
+  esac
+  if [ "$(_roio_cli_arguments_before)" -eq 0 ]; then
+    _roio_cli_buses
+  elif [ "$command" = dump ]; then
+    echo to= from= urgent normal class=message class=system class=stream or
+  fi
+}
+
+_roio_cli() {
+  local current words COMP_CWORD=$COMP_CWORD COMP_WORDS=("${COMP_WORDS[@]}")
+  # "local:robot" and "class=system" are one word each, whatever bash cuts words at.
+  _roio_cli_join
+  current=${COMP_WORDS[COMP_CWORD]}
+  words=$(_roio_cli_words)
+  mapfile -t COMPREPLY < <(compgen -W "$words" -- "$current")
+  # bash replaces only what follows the last colon or equals sign.
+  local kept=${current%"${current##*[:=]}"} index
+  for index in "${!COMPREPLY[@]}"; do
+    COMPREPLY[index]=${COMPREPLY[index]#"$kept"}
+  done
+  [[ ${#COMPREPLY[@]} -eq 1 && ${COMPREPLY[0]} == *= ]] && compopt -o nospace 2>/dev/null
+  return 0
+}
+
+# Puts the words that bash cut at ':' and '=' together again.
+_roio_cli_join() {
+  local joined=() index word position=0 glue=
+  for index in "${!COMP_WORDS[@]}"; do
+    word=${COMP_WORDS[index]}
+    if [[ ${#joined[@]} -gt 0 && ($word =~ ^[:=]+$ || -n $glue) ]]; then
+      joined[-1]+=$word
+    else
+      joined+=("$word")
+    fi
+    glue=
+    [[ $word =~ ^[:=]+$ ]] && glue=1
+    [ "$index" -eq "$COMP_CWORD" ] && position=$((${#joined[@]} - 1))
+  done
+  COMP_WORDS=("${joined[@]}")
+  COMP_CWORD=$position
+}
+
+complete -F _roio_cli roio-cli
