@@ -1,0 +1,95 @@
+#!/usr/bin/env python3
+"""Runs the console examples of a document, and compares what they print with what it says.
+
+A block is one bash session: "$ " begins a command, "> " goes on with it, the rest is output. Commands
+that end with "&" run until they end by themselves; what they print stands at the block's end, in their
+order. Blocks that name vcan0 need real SocketCAN and are run with ROIO_CLI_ON_SOCKETCAN, the others
+without.
+"""
+
+import os
+import re
+import stat
+import subprocess
+
+from driver import CLI, GUARD, CliTest, main, masked
+
+DOCUMENT = os.environ["ROIO_CLI_DOCUMENT"]
+ON_SOCKETCAN = "ROIO_CLI_ON_SOCKETCAN" in os.environ
+
+# Stands for roio-cli in the background: says in a file when it listens.
+LISTENER = r"""#!/bin/bash
+shift
+exec 3>&1
+"$ROIO_CLI" dump -v "$@" 2>&1 >&3 3>&- | while IFS= read -r line; do
+  case $line in
+    *': listening') : >"$LISTENING" ;;
+    *' shown, 0 lost') ;;
+    *) printf '%s\n' "$line" >&2 ;;
+  esac
+done
+exit "${PIPESTATUS[0]}"
+"""
+
+
+def console_blocks():
+    with open(DOCUMENT) as file:
+        text = file.read()
+    for match in re.finditer(r"(?ms)^```console\n(.*?)^```$", text):
+        line = text[: match.start()].count("\n") + 1
+        if ("vcan0" in match[1]) == ON_SOCKETCAN:
+            yield line, match[1]
+
+
+def split(block):
+    """The commands, and the output of all of them."""
+    commands, output = [], []
+    for line in block.splitlines():
+        if line.startswith("$ "):
+            commands.append(line[2:])
+        elif line.startswith("> "):
+            commands[-1] += "\n" + line[2:]
+        else:
+            output.append(line + "\n")
+    return commands, "".join(output)
+
+
+def session(commands):
+    """The commands as a script that waits for what runs in the background, first to listen, then to end."""
+    script, background = [], 0
+    for command in commands:
+        if command.endswith("&"):
+            background += 1
+            script.append(command.replace("roio-cli", "listener", 1)[:-1] + f'>"$OUT.{background}" 2>&1 &')
+            script.append('until [ -e "$LISTENING" ]; do sleep 0.01; done; rm "$LISTENING"')
+        else:
+            script.append(command)
+    script.append("wait")
+    script += [f'cat "$OUT.{number}"' for number in range(1, background + 1)]
+    return "\n".join(script)
+
+
+class DocumentTest(CliTest):
+    def test_examples_print_what_the_document_says(self):
+        programs = self.path("bin")
+        os.mkdir(programs)
+        os.symlink(CLI, os.path.join(programs, "roio-cli"))
+        with open(os.path.join(programs, "listener"), "w") as file:
+            file.write(LISTENER)
+            os.fchmod(file.fileno(), stat.S_IRWXU)
+        env = dict(os.environ, PATH=programs + ":" + os.environ["PATH"],
+                   LISTENING=self.path("listening"), OUT=self.path("out"))
+        blocks = list(console_blocks())
+        self.assertNotEqual(blocks, [])
+        for line, block in blocks:
+            commands, output = split(block)
+            with self.subTest(line=line):
+                done = subprocess.run(
+                    ["bash", "-c", session(commands)], stdout=subprocess.PIPE,
+                    stderr=subprocess.STDOUT, text=True, timeout=GUARD, env=env,
+                )
+                self.assertEqual(masked(done.stdout), masked(output))
+
+
+if __name__ == "__main__":
+    main()
