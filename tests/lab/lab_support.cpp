@@ -18,6 +18,8 @@
 namespace roio::lab {
 namespace {
 
+bool interface_is_fresh = false;
+
 std::string contents(const std::string& file) {
   std::ifstream stream(file);
   return {std::istreambuf_iterator<char>(stream), {}};
@@ -171,12 +173,16 @@ std::vector<std::string> texts(const std::vector<Frame>& frames) {
 }
 
 void LabTest::SetUp() {
-  shell("ip link del vcan0 2>&1; ip link add vcan0 type vcan && ip link set vcan0 up");
+  if (!interface_is_fresh) {
+    shell(
+        "printf 'link del vcan0\\nlink add vcan0 type vcan\\nlink set vcan0 up\\n' |"
+        " ip -force -batch - 2>/dev/null; ip link show up dev vcan0 >/dev/null");
+    interface_is_fresh = true;
+  }
 }
 
-void LabTest::TearDown() {
-  // A test that has deleted it leaves one behind all the same, for the next program in the lab.
-  shell("ip link show vcan0 >/dev/null 2>&1 || ip link add vcan0 type vcan; ip link set vcan0 up");
+void LabTestThatChangesTheInterface::TearDown() {
+  interface_is_fresh = false;
 }
 
 }  // namespace roio::lab

@@ -20,7 +20,7 @@ namespace roio::lab {
 /// A guard against hanging, never a measure.
 inline constexpr Timeout patience = std::chrono::seconds(20);
 /// Long enough to say that nothing comes, on a machine of one processor.
-inline constexpr Timeout a_moment = std::chrono::milliseconds(100);
+inline constexpr Timeout a_moment = std::chrono::milliseconds(50);
 
 /// Runs a shell command to its end; fails the test when its status is not 0.
 /// @return what it wrote to its standard output.
@@ -66,10 +66,15 @@ std::vector<Received> receive_exactly(Bus& bus, std::size_t count);
 std::vector<std::string> texts(const std::vector<Received>& received);
 std::vector<std::string> texts(const std::vector<Frame>& frames);
 
-/// vcan0, deleted and made again, up, with no queue.
+/// vcan0, up, with no queue.
 class LabTest : public testing::Test {
  protected:
   void SetUp() override;
+};
+
+/// The same, for tests that leave vcan0 in another state.
+class LabTestThatChangesTheInterface : public LabTest {
+ protected:
   void TearDown() override;
 };
 

@@ -53,7 +53,7 @@ std::uint64_t sum_of_losses(const std::vector<Received>& received) {
       [](std::uint64_t sum, const Received& one) { return sum + one.lost_before; });
 }
 
-class LossTest : public LabTest {};
+using LossTest = LabTest;
 
 TEST_F(LossTest, AnOverrunReceiverCountsWhatCangenSentInVain) {
   constexpr std::uint64_t sent = 5000;
@@ -121,7 +121,7 @@ TEST_F(LossTest, TheQueueHoldsFarMoreThanCandumpsWhereThatIsAllowed) {
 
 // --- a slow link ------------------------------------------------------------------------------
 
-class SlowLinkTest : public LabTest {
+class SlowLinkTest : public LabTestThatChangesTheInterface {
  protected:
   /// A queue of `frames` before a link that sends some 1,500 frames/s after the first 10.
   static void make_slow(int frames) {

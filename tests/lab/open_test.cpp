@@ -146,7 +146,7 @@ TEST_F(WaitTest, ASignalThatDoesNotCancelDoesNotEndAWait) {
   ASSERT_EQ(::sigaction(SIGALRM, &action, &before), 0);
   ::alarm(1);
   Received received{};
-  Peer cansend("sleep 1.5; cansend vcan0 123#");
+  Peer cansend("sleep 1.2; cansend vcan0 123#");
   EXPECT_EQ(bus->receive(received, patience), Result::ok);
   ::sigaction(SIGALRM, &before, nullptr);
 }

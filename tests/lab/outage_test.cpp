@@ -11,7 +11,7 @@
 namespace roio::lab {
 namespace {
 
-using OutageTest = LabTest;
+using OutageTest = LabTestThatChangesTheInterface;
 
 constexpr SocketCanFilter only_123{0x123, 0xC00007FF};
 

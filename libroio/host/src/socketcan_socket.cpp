@@ -28,8 +28,8 @@ static_assert(sizeof(SocketCanFilter) == sizeof(can_filter) &&
                   offsetof(SocketCanFilter, can_mask) == offsetof(can_filter, can_mask),
               "filters go to the kernel as they are");
 
-// The kernel counts about 768 bytes for a waiting frame, so this holds some 85,000: 11 seconds of a
-// saturated 1 Mbit/s bus. Memory is taken only for frames that do wait.
+// The kernel doubles this and counts about 768 bytes for a waiting frame, so it holds some 174,000:
+// 22 seconds of a saturated 1 Mbit/s bus. Memory is taken only for frames that do wait.
 constexpr int receive_buffer_bytes = 64 << 20;
 
 // Less than the shortest common transmit queue (10 frames): a full one is then EAGAIN with a
