@@ -164,7 +164,7 @@ TEST_F(SlowLinkTest, WhatDoesNotGoByTheDeadlineIsNotSentLater) {
   const auto frames = numbered_frames(0, 500);
   const Transfer at_once = bus->send(frames, no_wait);
   EXPECT_EQ(at_once.result, Result::timeout);
-  EXPECT_LT(at_once.count, frames.size());
+  EXPECT_LT(at_once.count, 50U) << "the socket is full well before the queue of 200 is";
   const auto rest = std::span(frames).subspan(at_once.count);
   const Transfer later = bus->send(rest, std::chrono::milliseconds(50));
   EXPECT_EQ(later.result, Result::timeout);
