@@ -29,7 +29,7 @@ class Identifiers {
 
 void pack_and_unpack_header(benchmark::State& state) {
   Identifiers identifiers;
-  for (auto _ : state) {
+  for (auto _ : state) {  // NOLINT(clang-analyzer-deadcode.DeadStores)
     roio::Header header = roio::unpack_id(identifiers.next());
     benchmark::DoNotOptimize(header);
     std::uint32_t id = roio::pack_id(header);
@@ -44,7 +44,7 @@ void match_plain_node_filter(benchmark::State& state) {
   if (compile(roio::interest_of({0, 2}), program) != roio::Status::ok) {
     state.SkipWithError("the plain node's program does not compile");
   }
-  for (auto _ : state) {
+  for (auto _ : state) {  // NOLINT(clang-analyzer-deadcode.DeadStores)
     bool accepted = program.accepts(identifiers.next());
     benchmark::DoNotOptimize(accepted);
   }
@@ -56,7 +56,7 @@ void fit_plain_node_to_mcp2515(benchmark::State& state) {
   if (compile(roio::interest_of({0, 2}), program) != roio::Status::ok) {
     state.SkipWithError("the plain node's program does not compile");
   }
-  for (auto _ : state) {
+  for (auto _ : state) {  // NOLINT(clang-analyzer-deadcode.DeadStores)
     benchmark::DoNotOptimize(program);
     roio::Mcp2515Filters image = roio::fit_mcp2515(program);
     benchmark::DoNotOptimize(image);
@@ -67,7 +67,7 @@ BENCHMARK(fit_plain_node_to_mcp2515);
 void exact_bit_length(benchmark::State& state) {
   Identifiers identifiers;
   roio::Frame frame{0, roio::FrameKind::extended, static_cast<std::uint8_t>(state.range(0)), {}};
-  for (auto _ : state) {
+  for (auto _ : state) {  // NOLINT(clang-analyzer-deadcode.DeadStores)
     frame.id = identifiers.next();
     frame.data[0] = static_cast<std::uint8_t>(frame.id);
     std::uint8_t bits = roio::wire_bits(frame);

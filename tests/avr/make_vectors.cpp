@@ -3,9 +3,9 @@
 //   make_vectors OUTPUT [WRONG_ROW]
 //
 // WRONG_ROW (from 0): gives that row a wrong CRC, for the test that sees the AVR test fail.
-#include <cstdlib>
 #include <fstream>
 #include <iostream>
+#include <string>
 
 #include "vectors.hpp"
 
@@ -47,7 +47,7 @@ int main(int argc, char** argv) {
   }
   try {
     std::ofstream out(argv[1]);
-    write(out, argc > 2 ? std::atol(argv[2]) : -1);
+    write(out, argc > 2 ? std::stol(argv[2]) : -1);
     out.close();
     return out ? 0 : 1;
   } catch (const std::exception& error) {

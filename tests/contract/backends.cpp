@@ -35,7 +35,7 @@ std::vector<Backend> backends() {
                    .arbitrates = false,
                    .paced = false,
                    .one_order = false,
-                   .flood = 80'000});
+                   .flood = 250'000});
   }
   return all;
 }

@@ -83,6 +83,7 @@ inline std::string backend_name(const testing::TestParamInfo<Backend>& info) {
 
 /// Declares a part of the suite and runs it against every backend, or against those that have a
 /// trait.
+// NOLINTBEGIN(bugprone-macro-parentheses): names of classes and members
 #define ROIO_CONTRACT(Part)                                                      \
   class Part : public roio::test::Contract {};                                   \
   INSTANTIATE_TEST_SUITE_P(Bus, Part, testing::ValuesIn(roio::test::backends()), \
@@ -92,5 +93,6 @@ inline std::string backend_name(const testing::TestParamInfo<Backend>& info) {
   INSTANTIATE_TEST_SUITE_P(                                                                  \
       Bus, Part, testing::ValuesIn(roio::test::backends_where(&roio::test::Backend::trait)), \
       roio::test::backend_name)
+// NOLINTEND(bugprone-macro-parentheses)
 
 #endif

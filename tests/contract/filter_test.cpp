@@ -6,10 +6,8 @@
 
 #include "contract.hpp"
 
-namespace roio {
+namespace roio::test {
 namespace {
-
-using namespace test;
 
 ROIO_CONTRACT(Filters);
 
@@ -136,4 +134,4 @@ TEST_P(Filters, ASendOnlyBusReceivesOnceItHasFilters) {
 }
 
 }  // namespace
-}  // namespace roio
+}  // namespace roio::test

@@ -5,10 +5,9 @@
 
 #include "contract.hpp"
 
-namespace roio {
+namespace roio::test {
 namespace {
 
-using namespace test;
 using std::chrono::milliseconds;
 
 ROIO_CONTRACT(Flow);
@@ -153,4 +152,4 @@ TEST_P(FullQueue, CloseEndsASendThatWaits) {
 }
 
 }  // namespace
-}  // namespace roio
+}  // namespace roio::test

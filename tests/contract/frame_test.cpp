@@ -5,10 +5,8 @@
 
 #include "contract.hpp"
 
-namespace roio {
+namespace roio::test {
 namespace {
-
-using namespace test;
 
 ROIO_CONTRACT(Frames);
 
@@ -133,4 +131,4 @@ TEST_P(Frames, NameIsWhatOpenWasGiven) {
 }
 
 }  // namespace
-}  // namespace roio
+}  // namespace roio::test

@@ -7,10 +7,8 @@
 
 #include "contract.hpp"
 
-namespace roio {
+namespace roio::test {
 namespace {
-
-using namespace test;
 
 constexpr Address own{0, 2};
 constexpr std::array<std::uint8_t, 3> angles{90, 45, 0};
@@ -236,4 +234,4 @@ TEST(Node, RefusesToBeWhatNoNodeIs) {
 }
 
 }  // namespace
-}  // namespace roio
+}  // namespace roio::test

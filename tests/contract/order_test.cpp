@@ -8,10 +8,8 @@
 
 #include "contract.hpp"
 
-namespace roio {
+namespace roio::test {
 namespace {
-
-using namespace test;
 
 ROIO_CONTRACT(Order);
 
@@ -210,4 +208,4 @@ TEST_P(Arbitration, TheLowerIdentifierOfAnotherSenderGoesFirst) {
 }
 
 }  // namespace
-}  // namespace roio
+}  // namespace roio::test

@@ -4,10 +4,9 @@
 
 #include "contract.hpp"
 
-namespace roio {
+namespace roio::test {
 namespace {
 
-using namespace test;
 using std::chrono::milliseconds;
 using Clock = std::chrono::steady_clock;
 
@@ -215,4 +214,4 @@ TEST_P(Waits, OneThreadMaySendWhileAnotherReceives) {
 }
 
 }  // namespace
-}  // namespace roio
+}  // namespace roio::test

@@ -69,16 +69,12 @@ class FilterProgram {
     if (((rule.mask & ~id_mask) | (rule.match & ~rule.mask)) != 0) {
       return Status::bad_argument;
     }
-    FilterProgram merged(*this);
-    if (!merged.insert(rule)) {
-      return Status::full;
-    }
-    *this = merged;
-    return Status::ok;
+    return insert(rule) ? Status::ok : Status::full;
   }
 
  private:
   // One pass per merge: each shortens the list or ends the loop, so at most size_ + 1 passes run.
+  // What shortens the list makes room, too: a program found full has not been touched.
   bool insert(FilterRule rule) {
     for (uint8_t i = 0; i < size_;) {
       if (contains(rules_[i], rule)) {
