@@ -44,6 +44,8 @@ class LocalBus final : public Bus {
     thread_ = start_thread([this] { run(); });
   }
 
+  LocalBus(const LocalBus&) = delete;
+  LocalBus& operator=(const LocalBus&) = delete;
   ~LocalBus() override { close(); }
 
   using Bus::receive;

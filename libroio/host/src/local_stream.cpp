@@ -10,11 +10,12 @@
 namespace roio::local {
 namespace {
 
-constexpr std::size_t read_size = 64 * 1024;
+constexpr std::size_t kib = 1024;
+constexpr std::size_t read_size = 64 * kib;
 // Small enough that one buffer of the kernel does not fill the socket; large enough to save calls.
-constexpr std::size_t write_size = 16 * 1024;
+constexpr std::size_t write_size = 16 * kib;
 // Sent bytes at the front of a buffer that never empties are given up from this size on.
-constexpr std::size_t compact_size = 256 * 1024;
+constexpr std::size_t compact_size = 256 * kib;
 
 }  // namespace
 
