@@ -62,20 +62,29 @@ UniqueFd make_socket() {
   return fd;
 }
 
+bool is_file_at(const UniqueFd& fd, const std::string& path) {
+  struct stat open {};
+  struct stat there {};
+  return ::fstat(fd.get(), &open) == 0 && ::stat(path.c_str(), &there) == 0 &&
+         open.st_ino == there.st_ino && open.st_dev == there.st_dev;
+}
+
 const sockaddr* generic(const sockaddr_un& address) {
   return reinterpret_cast<const sockaddr*>(&address);
 }
 
 }  // namespace
 
-HubSeat::HubSeat(UniqueFd lock, UniqueFd listener, std::string socket_path)
+HubSeat::HubSeat(UniqueFd lock, UniqueFd listener, std::string lock_path, std::string socket_path)
     : lock_(std::move(lock)),
       listener_(std::move(listener)),
+      lock_path_(std::move(lock_path)),
       socket_path_(std::move(socket_path)) {}
 
 HubSeat::~HubSeat() {
   if (lock_) {
     ::unlink(socket_path_.c_str());
+    ::unlink(lock_path_.c_str());  // still locked: see Place::claim()
   }
 }
 
@@ -113,6 +122,11 @@ std::optional<HubSeat> Place::claim() const {
     }
     fail(lock_path_);
   }
+  // Who held the lock before may have removed its file since it was opened here: then this lock is
+  // on a file that nobody else will find.
+  if (!is_file_at(lock, lock_path_)) {
+    return std::nullopt;
+  }
   // Bound beside its place and moved there: who finds the socket finds it listening.
   UniqueFd listener = make_socket();
   const std::string fresh = socket_path_ + ".new";
@@ -124,7 +138,7 @@ std::optional<HubSeat> Place::claim() const {
       ::rename(fresh.c_str(), socket_path_.c_str()) != 0) {
     fail(socket_path_);
   }
-  return HubSeat(std::move(lock), std::move(listener), socket_path_);
+  return HubSeat(std::move(lock), std::move(listener), lock_path_, socket_path_);
 }
 
 bool is_same_user(int socket_fd) noexcept {

@@ -12,18 +12,19 @@ namespace roio::local {
 /// dies.
 class HubSeat {
  public:
-  HubSeat(UniqueFd lock, UniqueFd listener, std::string socket_path);
+  HubSeat(UniqueFd lock, UniqueFd listener, std::string lock_path, std::string socket_path);
   HubSeat(HubSeat&&) noexcept = default;
   HubSeat& operator=(HubSeat&&) = delete;
   HubSeat(const HubSeat&) = delete;
   HubSeat& operator=(const HubSeat&) = delete;
-  ~HubSeat();  ///< Removes the socket, then gives back the lock.
+  ~HubSeat();  ///< Removes socket and lock file, then gives back the lock.
 
   [[nodiscard]] int listener() const noexcept { return listener_.get(); }
 
  private:
   UniqueFd lock_;
   UniqueFd listener_;
+  std::string lock_path_;
   std::string socket_path_;
 };
 
