@@ -125,33 +125,41 @@ CLI::Option* flag(CLI::App& app, const char* name, const char* description) {
 
 /// The words of `send`, as they come.
 struct SendWords {
-  explicit SendWords(CLI::App& app) {
-    without_type(app.add_option("BUS", bus, "can0, or local:NAME"));
-    without_type(
-        app.add_option("DEST", destination,
-                       "SUBNET.NODE, or SUBNET.* for everybody there; - reads standard input"));
-    without_type(app.add_option("DATA", data, "0 to 8 bytes in hexadecimal: 5A2D00 or 5A.2D.00"));
-    dec = flag(app, "--dec", "DATA are decimal numbers, one a byte: 90 45 0");
-    from = app.add_option("--from", from_text, "Source address (default 0.10)");
-    from->type_name("SUBNET.NODE");
-    urgent = flag(app, "--urgent", "Ahead of normal messages");
-    message_class = app.add_option("--class", class_text, "message (default), system or stream");
-    message_class->type_name("NAME");
-    count = app.add_option("--count", count_text, "Send N times; 0: until interrupted");
-    count->type_name("N");
-    interval = app.add_option("--interval", interval_text, "Time from one message to the next");
-    interval->type_name("MS");
-    app.add_option("--timeout", timeout_text,
-                   "Give up when a message has waited so long for the bus (default 1000)")
-        ->type_name("MS");
-  }
-
   std::string bus, destination, from_text;
   std::string class_text = "message";
   std::string count_text = "1", interval_text = "0", timeout_text = "1000";
   std::vector<std::string> data;
-  CLI::Option *dec, *from, *urgent, *message_class, *count, *interval;
+  CLI::Option* dec = nullptr;
+  CLI::Option* from = nullptr;
+  CLI::Option* urgent = nullptr;
+  CLI::Option* message_class = nullptr;
+  CLI::Option* count = nullptr;
+  CLI::Option* interval = nullptr;
 };
+
+void declare(CLI::App& app, SendWords& words) {
+  without_type(app.add_option("BUS", words.bus, "can0, or local:NAME"));
+  without_type(
+      app.add_option("DEST", words.destination,
+                     "SUBNET.NODE, or SUBNET.* for everybody there; - reads standard input"));
+  without_type(
+      app.add_option("DATA", words.data, "0 to 8 bytes in hexadecimal: 5A2D00 or 5A.2D.00"));
+  words.dec = flag(app, "--dec", "DATA are decimal numbers, one a byte: 90 45 0");
+  words.from = app.add_option("--from", words.from_text, "Source address (default 0.10)");
+  words.from->type_name("SUBNET.NODE");
+  words.urgent = flag(app, "--urgent", "Ahead of normal messages");
+  words.message_class =
+      app.add_option("--class", words.class_text, "message (default), system or stream");
+  words.message_class->type_name("NAME");
+  words.count = app.add_option("--count", words.count_text, "Send N times; 0: until interrupted");
+  words.count->type_name("N");
+  words.interval =
+      app.add_option("--interval", words.interval_text, "Time from one message to the next");
+  words.interval->type_name("MS");
+  app.add_option("--timeout", words.timeout_text,
+                 "Give up when a message has waited so long for the bus (default 1000)")
+      ->type_name("MS");
+}
 
 // Which options make no sense with lines that say everything themselves.
 void refuse_with_lines(const SendWords& words) {
@@ -220,28 +228,35 @@ SendOptions parse_send(const SendWords& words) {
 
 /// The words of `dump`, as they come.
 struct DumpWords {
-  explicit DumpWords(CLI::App& app) {
-    without_type(app.add_option("BUS", bus, "can0, or local:NAME"));
-    without_type(app.add_option("FILTER", filters, "Which frames; see below"));
-    count = app.add_option("-n", count_text, "End after N frames");
-    count->type_name("N");
-    quiet = app.add_option("-T", quiet_text, "End after MS without a frame (1 if -n not reached)");
-    quiet->type_name("MS");
-    time = app.add_option("-t", time_text,
-                          "Time: a absolute, d since the frame before, z since "
-                          "the first");
-    time->type_name("a|d|z");
-    log = flag(app, "--log", "candump -L's lines, byte for byte; notes go to standard error");
-    json = flag(app, "--json", "JSON lines");
-    no_foreign = flag(app, "--no-foreign", "Hide what is no Roio message (11-bit, remote)");
-    errors = flag(app, "--errors", "Show the controller's error reports too");
-    verbose = flag(app, "-v,--verbose", "Say on standard error when listening, and the counts");
-  }
-
   std::string bus, count_text, quiet_text, time_text;
   std::vector<std::string> filters;
-  CLI::Option *count, *quiet, *time, *log, *json, *no_foreign, *errors, *verbose;
+  CLI::Option* count = nullptr;
+  CLI::Option* quiet = nullptr;
+  CLI::Option* time = nullptr;
+  CLI::Option* log = nullptr;
+  CLI::Option* json = nullptr;
+  CLI::Option* no_foreign = nullptr;
+  CLI::Option* errors = nullptr;
+  CLI::Option* verbose = nullptr;
 };
+
+void declare(CLI::App& app, DumpWords& words) {
+  without_type(app.add_option("BUS", words.bus, "can0, or local:NAME"));
+  without_type(app.add_option("FILTER", words.filters, "Which frames; see below"));
+  words.count = app.add_option("-n", words.count_text, "End after N frames");
+  words.count->type_name("N");
+  words.quiet =
+      app.add_option("-T", words.quiet_text, "End after MS without a frame (1 if -n not reached)");
+  words.quiet->type_name("MS");
+  words.time = app.add_option("-t", words.time_text,
+                              "Time: a absolute, d since the frame before, z since the first");
+  words.time->type_name("a|d|z");
+  words.log = flag(app, "--log", "candump -L's lines, byte for byte; notes go to standard error");
+  words.json = flag(app, "--json", "JSON lines");
+  words.no_foreign = flag(app, "--no-foreign", "Hide what is no Roio message (11-bit, remote)");
+  words.errors = flag(app, "--errors", "Show the controller's error reports too");
+  words.verbose = flag(app, "-v,--verbose", "Say on standard error when listening, and the counts");
+}
 
 TimeColumn::Mode parse_time_mode(const std::string& text) {
   if (text != "a" && text != "d" && text != "z") {
@@ -326,8 +341,10 @@ Command parse_command_line(int argc, const char* const* argv) {
   CLI::App& dump_app = *app.add_subcommand("dump", "Show what is on a bus");
   prepare(send_app, "send [OPTIONS] BUS DEST [DATA]", send_examples);
   prepare(dump_app, "dump [OPTIONS] BUS [FILTER...]", dump_examples);
-  const SendWords send_words(send_app);
-  const DumpWords dump_words(dump_app);
+  SendWords send_words;
+  DumpWords dump_words;
+  declare(send_app, send_words);
+  declare(dump_app, dump_words);
 
   try {
     app.parse(argc, argv);

@@ -100,6 +100,9 @@ class Dump {
       announced_lost_ += received.lost_before;
     }
     const bool error = received.frame.kind == FrameKind::error;
+    if (error) {
+      next_look_ = {};  // the state that it tells of follows it at once
+    }
     if (options_.no_foreign && !error && !is_roio(received.frame)) {
       return;
     }

@@ -15,9 +15,12 @@
 namespace roio::cli {
 namespace {
 
+// All that a signal handler can reach.
+// NOLINTBEGIN(cppcoreguidelines-avoid-non-const-global-variables)
 std::atomic<int> caught{0};
 std::atomic<Bus*> watched{nullptr};
 std::array<int, 2> wake_pipe{-1, -1};
+// NOLINTEND(cppcoreguidelines-avoid-non-const-global-variables)
 static_assert(std::atomic<int>::is_always_lock_free && std::atomic<Bus*>::is_always_lock_free,
               "a signal handler may use them");
 
