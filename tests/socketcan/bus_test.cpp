@@ -179,6 +179,29 @@ TEST_F(SocketCanBus, ReceiveGoesOnAfterOutagesAndSignals) {
   EXPECT_EQ(bus->state(), BusState::active);
 }
 
+// As error reports and news of other interfaces do when there are many: poll() always says that
+// there is something, and there is nothing to return.
+TEST_F(SocketCanBus, WakingForNothingKeepsNoCallBeyondItsDeadline) {
+  const auto bus = open("can0");
+  const std::vector<FakeAnswer> nothing(1000000, FakeAnswer{EAGAIN});
+  kernel_.put(raw(1));
+  kernel_.answer_receives_with(nothing);
+  Received received{};
+  EXPECT_EQ(bus->receive(received, no_wait), Result::timeout);
+  EXPECT_EQ(bus->receive(received, std::chrono::milliseconds(10)), Result::timeout);
+  bus->cancel();
+  EXPECT_EQ(bus->receive(received, forever), Result::cancelled);
+  bus->resume();
+  kernel_.answer_receives_with({});
+  EXPECT_EQ(bus->receive(received, no_wait), Result::ok);
+
+  kernel_.answer_sends_with(nothing);
+  EXPECT_EQ(bus->send(frames(1)[0], no_wait), Result::timeout);
+  EXPECT_EQ(bus->send(frames(1)[0], std::chrono::milliseconds(10)), Result::timeout);
+  bus->cancel();
+  EXPECT_EQ(bus->send(frames(1)[0], forever), Result::cancelled);
+}
+
 TEST_F(SocketCanBus, BatchesLargerThanOneSystemCall) {
   const auto bus = open("can0");
   const auto before = std::chrono::system_clock::now();
@@ -308,6 +331,8 @@ TEST_F(SocketCanBus, CloseEndsBothWaits) {
   bus->close();
   sender.join();
   receiver.join();
+  kernel_.set_interface("can0", {});
+  EXPECT_EQ(bus->send(frames(1)[0], no_wait), Result::closed) << "though there is room";
 }
 
 }  // namespace

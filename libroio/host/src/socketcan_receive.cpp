@@ -32,10 +32,12 @@ Transfer Receiver::receive(std::span<Received> frames, Timeout timeout) {
   if (count == 0) {
     const Deadline deadline(timeout);
     Result woken = Result::ok;
-    // What came in together with the end of the wait is taken all the same.
+    // What came in together with the end of the wait is taken all the same. Error reports and news
+    // of other interfaces end a poll() too, but must not keep the call beyond its deadline.
     while (count == 0 && woken == Result::ok) {
       woken = wait(deadline.remaining());
       count = woken == Result::closed ? 0 : take(frames);
+      woken = woken == Result::ok && deadline.passed() ? Result::timeout : woken;
     }
     if (count == 0) {
       return {woken, 0};

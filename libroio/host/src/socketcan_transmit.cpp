@@ -42,6 +42,7 @@ Transfer Transmitter::send(std::span<const Frame> frames, Timeout timeout) {
   while (obstacle != Obstacle::none && woken == Result::ok) {
     woken = wait(obstacle, deadline);
     obstacle = woken == Result::closed ? obstacle : offer(frames, count);
+    woken = woken == Result::ok && deadline.passed() ? Result::timeout : woken;
   }
   if (obstacle == Obstacle::none) {
     return {Result::ok, count};
