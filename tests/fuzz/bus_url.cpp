@@ -1,9 +1,10 @@
 #include "target.hpp"
 
+namespace roio::fuzz {
 namespace {
 
-std::string rebuilt(const roio::BusUrl& url) {
-  using Kind = roio::BusUrl::Kind;
+std::string rebuilt(const BusUrl& url) {
+  using Kind = BusUrl::Kind;
   const std::string kind = url.kind == Kind::socketcan ? "socketcan:"
                            : url.kind == Kind::local   ? "local:"
                                                        : "serial:";
@@ -12,22 +13,21 @@ std::string rebuilt(const roio::BusUrl& url) {
 
 }  // namespace
 
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  using namespace roio;
-  const std::string_view text = fuzz::as_text(data, size);
+void check(std::string_view text) {
   const auto url = parse_bus_url(text);
   if (!url) {
-    fuzz::require_good_error(url.error(), text);
-    return 0;
+    require_good_error(url.error(), text);
+    return;
   }
-  fuzz::require(!url->target.empty(), "a bus has a name");
-  fuzz::require(url->kind == BusUrl::Kind::serial || url->target.find('/') == std::string::npos,
-                "a bus's name is no path");
-  fuzz::require(!url->bitrate || (*url->bitrate >= 1000 && *url->bitrate <= 1000000),
-                "a bit rate is within its range");
+  require(!url->target.empty(), "a bus has a name");
+  require(url->kind == BusUrl::Kind::serial || url->target.find('/') == std::string::npos,
+          "a bus's name is no path");
+  require(!url->bitrate || (*url->bitrate >= 1000 && *url->bitrate <= 1000000),
+          "a bit rate is within its range");
   const auto again = parse_bus_url(rebuilt(*url));
-  fuzz::require(again && again->kind == url->kind && again->target == url->target &&
-                    again->bitrate == url->bitrate,
-                "a bus comes back");
-  return 0;
+  require(again && again->kind == url->kind && again->target == url->target &&
+              again->bitrate == url->bitrate,
+          "a bus comes back");
 }
+
+}  // namespace roio::fuzz

@@ -5,6 +5,7 @@
 
 #include "target.hpp"
 
+namespace roio::fuzz {
 namespace {
 
 // A space ends a word, so that words may be empty and hold anything else.
@@ -20,22 +21,20 @@ std::vector<std::string> split(std::string_view text) {
 
 }  // namespace
 
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  using namespace roio;
-  const std::string_view text = fuzz::as_text(data, size);
+void check(std::string_view text) {
   for (const bool roio_only : {false, true}) {
     const auto filters = cli::compile_filter_words(split(text), roio_only);
     if (!filters) {
-      fuzz::require_good_error(filters.error(), text);
+      require_good_error(filters.error(), text);
       continue;
     }
-    fuzz::require(!filters->empty() && filters->size() <= cli::max_kernel_filters,
-                  "1..512 filters");
+    require(!filters->empty() && filters->size() <= cli::max_kernel_filters, "1..512 filters");
     for (const SocketCanFilter& filter : *filters) {
-      fuzz::require((filter.can_mask & socketcan::error_flag) == 0, "bit 29 of a mask is 0");
-      fuzz::require((filter.can_id & ~filter.can_mask & ~socketcan::inverted) == 0,
-                    "an identifier lies within its mask");
+      require((filter.can_mask & socketcan::error_flag) == 0, "bit 29 of a mask is 0");
+      require((filter.can_id & ~filter.can_mask & ~socketcan::inverted) == 0,
+              "an identifier lies within its mask");
     }
   }
-  return 0;
 }
+
+}  // namespace roio::fuzz

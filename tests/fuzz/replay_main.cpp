@@ -77,10 +77,6 @@ void change(std::mt19937& generator, const std::vector<Input>& corpus, Input& in
   input.resize(std::min(input.size(), longest_input));
 }
 
-void run(const Input& input) {
-  LLVMFuzzerTestOneInput(reinterpret_cast<const std::uint8_t*>(input.data()), input.size());
-}
-
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -93,14 +89,14 @@ int main(int argc, char** argv) {
     std::cerr << argv[1] << ": no seeds; expected at least one file\n";
     return 2;
   }
-  std::for_each(corpus.begin(), corpus.end(), run);
+  std::for_each(corpus.begin(), corpus.end(), roio::fuzz::check);
   std::mt19937 generator = roio::test::seeded_generator();
   for (int i = 0; i < changed_inputs; ++i) {
     Input input = corpus[up_to(generator, static_cast<std::uint32_t>(corpus.size() - 1))];
     for (std::uint32_t changes = 1 + up_to(generator, 3); changes > 0; --changes) {
       change(generator, corpus, input);
     }
-    run(input);
+    roio::fuzz::check(input);
   }
   std::cout << corpus.size() << " seeds and " << changed_inputs << " changed inputs\n";
   return 0;

@@ -1,23 +1,19 @@
-/// What every fuzz target shares. A target is one file that defines LLVMFuzzerTestOneInput() and
-/// asks require() for the properties that must hold whatever the input was.
+/// What every fuzz target shares. A target is one file that defines check() and asks require() for
+/// the properties that must hold whatever the input was.
 #ifndef ROIO_TESTS_FUZZ_TARGET_HPP
 #define ROIO_TESTS_FUZZ_TARGET_HPP
 
 #include <cstddef>
-#include <cstdint>
 #include <cstdlib>
 #include <iostream>
 #include <roio/text.hpp>
 #include <string_view>
 
-/// Called with each input, by libFuzzer or by replay_main.cpp. @return 0.
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size);
-
 namespace roio::fuzz {
 
-inline std::string_view as_text(const std::uint8_t* data, std::size_t size) {
-  return {reinterpret_cast<const char*>(data), size};
-}
+/// The target's own: called with each input, of any bytes, by libfuzzer_entry.cpp or
+/// replay_main.cpp.
+void check(std::string_view input);
 
 /// Ends the program when a property does not hold, as a sanitizer would.
 inline void require(bool holds, const char* property) {

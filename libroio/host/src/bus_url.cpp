@@ -169,11 +169,7 @@ Parsed<BusUrl> read_bus_url(Part url) {
 }  // namespace
 
 Parsed<BusUrl> parse_bus_url(std::string_view text) {
-  const Parsed<BusUrl> url = read_bus_url({text, 0});
-  if (!url) {
-    return in_context("bus", text, url.error());
-  }
-  return url;
+  return in_context("bus", text, read_bus_url({text, 0}));
 }
 
 }  // namespace roio

@@ -113,10 +113,9 @@ Parsed<Frame> read_log_frame(std::string_view word, std::size_t offset) {
   if (word.empty()) {
     return ParseError{"no frame; expected (SECONDS.FRACTION) INTERFACE FRAME", offset};
   }
-  const Parsed<Frame> frame = read_frame(word);
+  Parsed<Frame> frame = in_context("frame", word, read_frame(word));
   if (!frame) {
-    return ParseError{"frame " + quote(word) + ": " + frame.error().message,
-                      offset + frame.error().offset};
+    return ParseError{frame.error().message, offset + frame.error().offset};
   }
   return frame;
 }
@@ -176,11 +175,7 @@ char* write_time(char* out, Timestamp time) noexcept {
 
 Parsed<LogLine> parse_log_line(std::string_view line) {
   line = without_line_end(line);
-  const Parsed<LogLine> parsed = read_log_line(line);
-  if (!parsed) {
-    return in_context("log line", line, parsed.error());
-  }
-  return parsed;
+  return in_context("log line", line, read_log_line(line));
 }
 
 std::size_t format_log_line(std::span<char, max_log_line> out, Timestamp time,

@@ -177,11 +177,7 @@ char* write_frame(char* out, const Frame& frame) noexcept {
 }
 
 Parsed<Frame> parse_frame_text(std::string_view text) {
-  const Parsed<Frame> frame = read_frame(text);
-  if (!frame) {
-    return in_context("frame", text, frame.error());
-  }
-  return frame;
+  return in_context("frame", text, read_frame(text));
 }
 
 std::string to_text(const Frame& frame) {

@@ -201,7 +201,7 @@ bool JsonEvents::refuse(const std::string& value) {
     case Place::end:
       break;
   }
-  return fail("JSON: " + shown + "; expected an object such as {\"type\":\"Roio\",...}");
+  return fail("JSON: " + shown + R"(; expected an object such as {"type":"Roio",...})");
 }
 
 bool JsonEvents::refuse_module(const std::string& name) {

@@ -33,16 +33,16 @@ struct FieldRule {
 };
 
 inline constexpr std::array<FieldRule, 11> field_rules{
-    {{Field::type, "type", "\"Roio\""},
+    {{Field::type, "type", R"("Roio")"},
      {Field::is_broadcast, "isBroadcast", "true or false"},
      {Field::address, "address", "an integer 0..254"},
      {Field::subnet, "subnet", "an integer 0..31"},
      {Field::message_length, "messageLength", "an integer 0..8"},
      {Field::data, "data", "an array of up to 8 integers 0..255"},
-     {Field::priority, "priority", "\"urgent\" or \"normal\""},
-     {Field::message_class, "class", "\"message\", \"system\" or \"stream\""},
-     {Field::source, "source", "\"SUBNET.NODE\", such as \"0.10\""},
-     {Field::destination, "destination", "\"SUBNET.NODE\" or \"SUBNET.*\""},
+     {Field::priority, "priority", R"("urgent" or "normal")"},
+     {Field::message_class, "class", R"("message", "system" or "stream")"},
+     {Field::source, "source", R"("SUBNET.NODE", such as "0.10")"},
+     {Field::destination, "destination", R"("SUBNET.NODE" or "SUBNET.*")"},
      {Field::timestamp, "timestamp", "seconds since 1970, a number 0..9223372036.854775807"}}};
 
 inline const FieldRule& rule_of(Field field) {

@@ -37,13 +37,13 @@ std::optional<std::string> contradiction(const Fields& fields) {
   }
   if (fields.message_length != fields.data.length) {
     return field_error(Field::message_length, std::to_string(fields.message_length) +
-                                                  ", but \"data\" has " +
+                                                  R"(, but "data" has )" +
                                                   std::to_string(fields.data.length));
   }
   const Address destination{fields.subnet, fields.address};
   if (fields.has(Field::destination) && fields.destination != destination) {
     return field_error(Field::destination, quote(to_string(fields.destination)) +
-                                               ", but \"subnet\" and \"address\" say " +
+                                               R"(, but "subnet" and "address" say )" +
                                                quote(to_string(destination)));
   }
   return std::nullopt;
@@ -63,7 +63,8 @@ JsonMessage make_message(const Fields& fields) {
 ParseError not_json(std::string_view text, const JsonEvents& events) {
   const std::size_t offset = events.syntax_error().value_or(0);
   const std::string field =
-      events.last_field() ? std::string(", in or after field \"") + events.last_field() + '"' : "";
+      events.last_field() ? std::string(R"(, in or after field ")") + events.last_field() + '"'
+                          : "";
   if (offset >= text.size()) {
     return {"JSON: ends too early, after " + std::to_string(text.size()) + " bytes" + field,
             text.size()};

@@ -41,27 +41,23 @@ Parsed<Address> read_address(std::string_view text, const char* node_range) {
   return Address{static_cast<std::uint8_t>(*subnet), static_cast<std::uint8_t>(*node)};
 }
 
-}  // namespace
-
-Parsed<Address> parse_address(std::string_view text) {
-  const Parsed<Address> address = read_address(text, destination_range);
-  if (!address) {
-    return in_context("address", text, address.error());
+Parsed<Address> read_source(std::string_view text) {
+  Parsed<Address> address = read_address(text, source_range);
+  if (address && is_broadcast(*address)) {
+    return ParseError{"a broadcast is no address of a node's own; expected node 0..254",
+                      text.find('.') + 1};
   }
   return address;
 }
 
+}  // namespace
+
+Parsed<Address> parse_address(std::string_view text) {
+  return in_context("address", text, read_address(text, destination_range));
+}
+
 Parsed<Address> parse_source(std::string_view text) {
-  const Parsed<Address> address = read_address(text, source_range);
-  if (!address) {
-    return in_context("address", text, address.error());
-  }
-  if (is_broadcast(*address)) {
-    return in_context(
-        "address", text,
-        {"a broadcast is no address of a node's own; expected node 0..254", text.find('.') + 1});
-  }
-  return address;
+  return in_context("address", text, read_source(text));
 }
 
 std::string to_string(Address address) {
@@ -70,11 +66,7 @@ std::string to_string(Address address) {
 }
 
 Parsed<Bytes> parse_hex(std::string_view text) {
-  const Parsed<Bytes> bytes = read_hex(text);
-  if (!bytes) {
-    return in_context("data", text, bytes.error());
-  }
-  return bytes;
+  return in_context("data", text, read_hex(text));
 }
 
 std::string to_hex(const std::uint8_t* data, std::size_t length) {
@@ -111,7 +103,7 @@ Parsed<Priority> parse_priority(std::string_view text) {
       return priority;
     }
   }
-  return in_context("priority", text, {"expected urgent or normal", 0});
+  return in_context("priority", text, ParseError{"expected urgent or normal", 0});
 }
 
 Parsed<MessageClass> parse_class(std::string_view text) {
@@ -121,7 +113,7 @@ Parsed<MessageClass> parse_class(std::string_view text) {
       return message_class;
     }
   }
-  return in_context("class", text, {"expected message, system, stream or reserved", 0});
+  return in_context("class", text, ParseError{"expected message, system, stream or reserved", 0});
 }
 
 }  // namespace roio
