@@ -20,6 +20,7 @@ head -c 300000 /dev/urandom >"$folder/bytes"
 (
   cd "$folder" || exit
   export ROIO_LAB_TEST="it's \"here\"" UNRELATED=no
+  # shellcheck disable=SC2016  # the lab's shell expands them
   "$lab" sh -c '
     cat bytes
     echo "$# <$1> <$2> <$3>" >seen

@@ -46,7 +46,8 @@ int bound_interface(int socket) noexcept;
 /// The socket's pending error, taken from it; 0 when there is none.
 int take_error(int socket) noexcept;
 
-/// Frames that the kernel had no room for in this socket, modulo 2^32; nothing before Linux 4.12.
+/// Frames, error reports among them, that the kernel had no room for in this socket, modulo 2^32;
+/// nothing before Linux 4.12.
 std::optional<std::uint32_t> count_drops(int socket) noexcept;
 
 }  // namespace roio::socketcan

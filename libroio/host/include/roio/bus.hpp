@@ -96,7 +96,8 @@ class Bus {
   Bus& operator=(const Bus&) = delete;
   virtual ~Bus() = default;
 
-  /// Sends frames in order; waits while a queue is full or the interface is down, to the deadline.
+  /// Sends frames in order; waits while a queue is full, the interface is down or the controller is
+  /// bus-off, to the deadline.
   /// Order among frames of one priority is kept; where the backend arbitrates, urgent ones (bit 28
   /// of an extended identifier 0) pass normal ones that still wait. A sender does not receive its
   /// own frames.
