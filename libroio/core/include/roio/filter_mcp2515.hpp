@@ -228,7 +228,9 @@ Mcp2515Filters fit_mcp2515(const FilterProgram<Capacity>& program) {
   if (count == 0) {
     rules[count++] = detail::nobody();
   }
-  count = detail::shorten(rules, count, detail::Mcp2515Search::max_rules);
+  if (Capacity > detail::Mcp2515Search::max_rules) {
+    count = detail::shorten(rules, count, detail::Mcp2515Search::max_rules);
+  }
   const detail::Mcp2515Search search(rules, count);
 
   FilterRule slots[Mcp2515Filters::filter_count];
