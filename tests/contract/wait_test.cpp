@@ -1,5 +1,6 @@
 // Timeouts, cancellation, closing, and the descriptor for other people's event loops.
 #include <csignal>
+#include <ctime>
 #include <thread>
 
 #include "contract.hpp"
@@ -116,6 +117,26 @@ TEST_P(Waits, ASignalThatCancelsNothingEndsNoWait) {
   bus->cancel();
   EXPECT_EQ(result_of(receiving), Result::cancelled);
   ::sigaction(SIGUSR1, &before, nullptr);
+}
+
+std::chrono::nanoseconds thread_cpu_time() {
+  timespec used{};
+  ::clock_gettime(CLOCK_THREAD_CPUTIME_ID, &used);
+  return std::chrono::seconds(used.tv_sec) + std::chrono::nanoseconds(used.tv_nsec);
+}
+
+TEST_P(Waits, SleepAlsoAfterWhatWokeAnEarlierOne) {
+  const auto sender = join();
+  const auto receiver = join();
+  receiver->cancel();
+  EXPECT_EQ(receive_one(*receiver, guard), Result::cancelled);
+  receiver->resume();
+  ASSERT_EQ(sender->send(numbered(1), guard), Result::ok);
+  EXPECT_EQ(receive_one(*receiver, guard), Result::ok);
+  constexpr milliseconds wait{100};
+  const auto before = thread_cpu_time();
+  EXPECT_EQ(receive_one(*receiver, wait), Result::timeout);
+  EXPECT_LT(thread_cpu_time() - before, wait / 4) << "it spins";
 }
 
 TEST_P(Waits, CloseEndsAReceiveThatWaits) {
