@@ -15,46 +15,49 @@ BUS = "local:robot"
 
 
 class SendTest(CliTest):
-    def shown(self, *arguments, stdin="", form=()):
+    def shown(self, *arguments):
         """What dump shows of one send."""
-        dump = self.dump("-n", "1", *form, BUS)
-        self.send(*arguments, stdin=stdin)
+        dump = self.dump("-n", "1", BUS)
+        self.send(*arguments)
         status, out, err = dump.result()
         self.assertEqual((status, err), (0, ""))
         return out
 
     def test_every_way_to_say_a_message(self):
         bytes_5a2d00 = "0.10   -> 0.2     normal  message  [3]  5A 2D 00\n"
-        for arguments, line in [
-            (["0.2", "5A2D00"], bytes_5a2d00),
-            (["0.2", "5a.2d.00"], bytes_5a2d00),
-            (["0.2", "--dec", "90", "45", "0"], bytes_5a2d00),
-            (["--dec", "0.2", "90", "45", "0"], bytes_5a2d00),
-            (["0.2"], "0.10   -> 0.2     normal  message  [0]\n"),
-            (["0.2", ""], "0.10   -> 0.2     normal  message  [0]\n"),
-            (["0.*", "01"], "0.10   -> 0.*     normal  message  [1]  01\n"),
-            (["0.255", "01"], "0.10   -> 0.*     normal  message  [1]  01\n"),
-            (["31.254", "0102030405060708"],
+        for options, message, line in [
+            ([], ["0.2", "5A2D00"], bytes_5a2d00),
+            ([], ["0.2", "5a.2d.00"], bytes_5a2d00),
+            ([], ["0.2", "--dec", "90", "45", "0"], bytes_5a2d00),
+            (["--dec"], ["0.2", "90", "45", "0"], bytes_5a2d00),
+            ([], ["0.2"], "0.10   -> 0.2     normal  message  [0]\n"),
+            ([], ["0.2", ""], "0.10   -> 0.2     normal  message  [0]\n"),
+            ([], ["0.*", "01"], "0.10   -> 0.*     normal  message  [1]  01\n"),
+            ([], ["0.255", "01"], "0.10   -> 0.*     normal  message  [1]  01\n"),
+            ([], ["31.254", "0102030405060708"],
              "0.10   -> 31.254  normal  message  [8]  01 02 03 04 05 06 07 08\n"),
-            (["--urgent", "0.2", "01"], "0.10   -> 0.2     urgent  message  [1]  01\n"),
-            (["--from", "31.254", "0.2", "01"], "31.254 -> 0.2     normal  message  [1]  01\n"),
-            (["--class", "message", "0.2", "01"], "0.10   -> 0.2     normal  message  [1]  01\n"),
-            (["--class", "system", "0.2", "01"], "0.10   -> 0.2     normal  system   [1]  01\n"),
-            (["--class=stream", "0.2", "01"], "0.10   -> 0.2     normal  stream   [1]  01\n"),
+            (["--urgent"], ["0.2", "01"], "0.10   -> 0.2     urgent  message  [1]  01\n"),
+            (["--from", "31.254"], ["0.2", "01"],
+             "31.254 -> 0.2     normal  message  [1]  01\n"),
+            (["--class", "message"], ["0.2", "01"],
+             "0.10   -> 0.2     normal  message  [1]  01\n"),
+            (["--class", "system"], ["0.2", "01"],
+             "0.10   -> 0.2     normal  system   [1]  01\n"),
+            (["--class=stream"], ["0.2", "01"], "0.10   -> 0.2     normal  stream   [1]  01\n"),
         ]:
-            with self.subTest(arguments):
-                options = [word for word in arguments if word.startswith("--")]
-                if options and arguments[0] == options[0]:  # options first: the bus goes after them
-                    at = 1 if options[0] in ("--urgent", "--dec") or "=" in options[0] else 2
-                else:
-                    at = 0
-                self.assertEqual(self.shown(*arguments[:at], BUS, *arguments[at:]), line)
+            with self.subTest(options + message):
+                self.assertEqual(self.shown(*options, BUS, *message), line)
 
     def test_count_sends_as_often(self):
-        dump = self.dump("-T", "300", BUS)
+        dump = self.dump("-n", "101", BUS)
         self.send("--count", "100", BUS, "0.2", "01")
+        self.send(BUS, "0.3")
         self.assertEqual(
-            dump.result(), (0, "0.10   -> 0.2     normal  message  [1]  01\n" * 100, "")
+            dump.result(),
+            (0,
+             "0.10   -> 0.2     normal  message  [1]  01\n" * 100 +
+             "0.10   -> 0.3     normal  message  [0]\n",
+             ""),
         )
 
     def test_interval_spaces_the_messages_out(self):
@@ -246,24 +249,23 @@ class FormTest(CliTest):
         )
 
     def test_filters_let_through_what_they_say(self):
+        # options, destination and data; the filter that wants just this one
         traffic = [
-            (["0.2", "01"], "to=0.2"),
-            (["0.*", "02"], "to=0.*"),
-            (["--from", "0.3", "1.4", "03"], "from=0.3"),
-            (["--urgent", "1.5", "04"], "urgent"),
-            (["--class", "system", "1.6", "05"], "class=system"),
+            ([], ["0.2", "01"], "to=0.2"),
+            ([], ["0.*", "02"], "to=0.*"),
+            (["--from", "0.3"], ["1.4", "03"], "from=0.3"),
+            (["--urgent"], ["1.5", "04"], "urgent"),
+            (["--class", "system"], ["1.6", "05"], "class=system"),
         ]
-        for _, word in traffic:
+        for _, (_, data), word in traffic:
             with self.subTest(word):
-                dump = self.dump("-T", "300", "--log", BUS, word)
-                for arguments, _ in traffic:
-                    at = next(i for i, w in enumerate(arguments) if w[0].isdigit() and
-                              (i == 0 or arguments[i - 1] != "--from"))
-                    self.send(*arguments[:at], BUS, *arguments[at:])
-                number = 1 + [word for _, word in traffic].index(word)
+                dump = self.dump("-n", "2", "--log", BUS, word, "or", "to=31.254")
+                for options, message, _ in traffic:
+                    self.send(*options, BUS, *message)
+                self.send(BUS, "31.254", "FF")  # the last one
                 status, out, err = dump.result()
                 self.assertEqual((status, err), (0, ""))
-                self.assertEqual([line[-2:] for line in out.splitlines()], [f"{number:02}"])
+                self.assertEqual([line[-2:] for line in out.splitlines()], [data, "FF"])
 
 
 class EndTest(CliTest):
@@ -283,9 +285,9 @@ class EndTest(CliTest):
         )
 
     def test_quiet_time_begins_again_with_each_frame(self):
-        dump = self.dump("-T", "1000", BUS)
-        self.send("--count", "4", "--interval", "400", BUS, "0.2", "01")
-        self.assertEqual(dump.result(), (0, "0.10   -> 0.2     normal  message  [1]  01\n" * 4, ""))
+        dump = self.dump("-T", "4000", BUS)
+        self.send("--count", "3", "--interval", "2100", BUS, "0.2", "01")  # 4.2 s in all
+        self.assertEqual(dump.result(), (0, "0.10   -> 0.2     normal  message  [1]  01\n" * 3, ""))
 
     def test_signals_end_it_cleanly(self):
         for number in (signal.SIGINT, signal.SIGTERM):

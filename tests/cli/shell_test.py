@@ -120,13 +120,14 @@ class CompletionTest(CliTest):
         file = os.path.join(TOOL, "completions", "_roio-cli")
         self.run_shell("zsh", "-n", file)
         # zsh completes on a terminal of its own only; what it is given to offer goes to a file too.
+        # Before its line editor is ready, the terminal itself would take the keys.
         script = r"""
           zmodload zsh/zpty
           zpty shell zsh -f -i
           zpty -w shell 'PS1='
           zpty -w shell 'fpath=('"$1"' $fpath); autoload -U compinit; compinit -u -D'
           zpty -w shell 'compadd() { if [[ ${@[1,(i)(-|--)]} == *-(O|A|D)* ]]; then builtin compadd "$@"; return; fi; builtin compadd -A found "$@"; print -rl -- $found >> '"$3"'; builtin compadd "$@" }'
-          zpty -w shell 'print -r -- READY'
+          zpty -w shell 'zle-line-init() { print -n READ""Y }; zle -N zle-line-init'
           zpty -r shell out '*READY*'
           zpty -n -w shell "$2"$'\t'$'\C-U'$'\n'"print END"$'\n'
           zpty -r shell out '*END*'
