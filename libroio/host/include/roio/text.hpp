@@ -1,4 +1,5 @@
-/// The textual forms that people type and read: addresses, data bytes, bus names. Pure functions.
+/// The textual forms that people type and read: addresses, data bytes, bus names. Pure functions,
+/// the same in every locale. Numbers are decimal digits alone: no sign, no leading zero.
 #ifndef ROIO_TEXT_HPP
 #define ROIO_TEXT_HPP
 
@@ -70,7 +71,8 @@ const char* to_string(MessageClass message_class) noexcept;
 Parsed<Priority> parse_priority(std::string_view text);
 Parsed<MessageClass> parse_class(std::string_view text);
 
-/// What open() takes.
+/// What open() takes. Of "serial:DEVICE?..." the options are not looked at yet, as no such bus can
+/// be opened.
 struct BusUrl {
   enum class Kind : std::uint8_t { socketcan, local, serial };
   Kind kind = Kind::socketcan;
