@@ -24,6 +24,11 @@ constexpr std::size_t batch_size = 256;
 // noticed when no frame comes.
 constexpr Timeout look_around_every = std::chrono::milliseconds(200);
 
+// A local bus without a hub for longer than this is worth a word.
+constexpr Timeout hub_change_time = std::chrono::seconds(2);
+
+constexpr std::chrono::seconds longest_change_of_hands{2};
+
 // The log's own names: an interface's is at most 15 bytes long, and a local bus's goes without
 // "local:".
 std::string name_in_log(const std::string& bus_url) {
@@ -112,17 +117,28 @@ class Dump {
 
   // Asks the kernel, so not after every batch.
   void announce_changes() {
+    next_look_ = Clock::now() + look_around_every;
     const BusState state = bus_.state();
+    if (is_local_ && is_between_hubs(state)) {
+      return;
+    }
     const std::uint64_t outages = bus_.statistics().outages;
     const bool is_out = state == BusState::down || state == BusState::absent;
-    // An outage that began and ended between two looks; on a local bus, another process has become
-    // the hub and nothing is lost by it.
+    // An outage that began and ended between two looks.
     if (outages != outages_ && !is_out && !is_local_) {
       announce(BusState::down);
     }
     announce(state);
     outages_ = outages;
-    next_look_ = Clock::now() + look_around_every;
+  }
+
+  // On a local bus another process becomes the hub within moments, and nothing is lost by it.
+  bool is_between_hubs(BusState state) {
+    if (state != BusState::absent) {
+      last_present_ = Clock::now();
+      return false;
+    }
+    return Clock::now() - last_present_ < hub_change_time;
   }
 
   void announce(BusState state) {
@@ -157,6 +173,8 @@ class Dump {
   BusState state_ = BusState::active;
   bool is_local_;
   std::uint64_t outages_ = 0;
+  Clock::time_point last_present_ = Clock::now();
+  std::optional<Clock::time_point> absent_since_;
   Clock::time_point next_look_;  // at once: the bus may be down from the start
   std::uint64_t shown_ = 0;
   std::uint64_t announced_lost_ = 0;
