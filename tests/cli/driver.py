@@ -9,6 +9,7 @@ import re
 import shutil
 import subprocess
 import tempfile
+import threading
 import unittest
 
 CLI = os.environ["ROIO_CLI"]
@@ -34,6 +35,10 @@ class Dump:
             text=True,
             env=env,
         )
+        # Whoever waits for its next line is not left waiting for ever.
+        self.guard = threading.Timer(2 * GUARD, self.process.kill)
+        self.guard.daemon = True
+        self.guard.start()
         self.first = self.process.stderr.readline()
         if not self.first.endswith(": listening\n"):
             self.process.wait(GUARD)
@@ -90,6 +95,7 @@ class CliTest(unittest.TestCase):
         dump = Dump(*arguments, **options)
 
         def end():
+            dump.guard.cancel()
             if dump.process.poll() is None:
                 dump.process.kill()
             dump.process.communicate()

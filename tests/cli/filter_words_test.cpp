@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <functional>
+#include <ostream>
 #include <random>
 #include <roio/filter_socketcan.hpp>
 #include <roio/header.hpp>
@@ -51,6 +52,10 @@ struct Golden {
   const char* words;
   const char* filters;
 };
+
+std::ostream& operator<<(std::ostream& out, const Golden& row) {
+  return out << row.name;
+}
 
 class FilterWordsGolden : public testing::TestWithParam<Golden> {};
 
@@ -98,6 +103,10 @@ struct Refused {
   const char* words;
   const char* error;
 };
+
+std::ostream& operator<<(std::ostream& out, const Refused& row) {
+  return out << row.name;
+}
 
 class FilterWordsRefused : public testing::TestWithParam<Refused> {};
 

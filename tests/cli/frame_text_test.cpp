@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <chrono>
+#include <ostream>
 #include <roio/message.hpp>
 #include <string>
 
@@ -23,6 +24,10 @@ struct Row {
   Frame frame;
   const char* text;
 };
+
+std::ostream& operator<<(std::ostream& out, const Row& row) {
+  return out << row.name;
+}
 
 class FrameText : public testing::TestWithParam<Row> {};
 

@@ -174,7 +174,6 @@ class Dump {
   bool is_local_;
   std::uint64_t outages_ = 0;
   Clock::time_point last_present_ = Clock::now();
-  std::optional<Clock::time_point> absent_since_;
   Clock::time_point next_look_;  // at once: the bus may be down from the start
   std::uint64_t shown_ = 0;
   std::uint64_t announced_lost_ = 0;
