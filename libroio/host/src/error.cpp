@@ -26,7 +26,7 @@ class Category final : public std::error_category {
       case Errc::version_mismatch:
         return "the bus is run by an incompatible version of Roio";
       case Errc::not_permitted:
-        return "the bus belongs to another user";
+        return "local buses are for one user alone";
       case Errc::too_many_filters:
         return "too many filters; a bus takes 512";
       case Errc::bad_frame:

@@ -68,6 +68,7 @@ class LocalBus final : public Bus {
   void report_consumed();
   void flush();
   void adopt(Connection connection);
+  void offer_again();
   void disconnect();
   bool read();
   bool handle(const Record& record);
@@ -99,6 +100,7 @@ class LocalBus final : public Bus {
   std::optional<Connection> connection_;
   std::vector<SocketCanFilter> filters_;
   std::array<std::deque<OfferedFrame>, lane_count> sent_;  // not reported done yet
+  std::array<std::size_t, lane_count> offered_{};          // of sent_, to this hub
   std::array<std::uint64_t, lane_count> sequence_{};
   std::deque<Received> queue_;
   std::size_t queued_before_ = 0;  // of queue_, from hubs before this one
@@ -154,6 +156,7 @@ std::size_t LocalBus::offer(std::span<const Frame> frames) {
     }
     sent_.at(lane).push_back({++sequence_.at(lane), to_wire(frame)});
     append_record(stream.out(), sent_.at(lane).back());
+    ++offered_.at(lane);
     ++count;
   }
   statistics_.sent += count;
@@ -322,6 +325,7 @@ bool LocalBus::read() {
       return false;
     }
   }
+  report_consumed();  // duplicates are, though nobody takes them
   return split == Split::incomplete;
 }
 
@@ -365,8 +369,11 @@ void LocalBus::take_done(const Done& done) {
     auto& sent = sent_.at(lane);
     while (!sent.empty() && sent.front().sequence <= done.sequence.at(lane)) {
       sent.pop_front();
+      offered_.at(lane) -= std::min<std::size_t>(offered_.at(lane), 1);
     }
   }
+  offer_again();
+  flush();
   sendable_.set();
   if (unacknowledged() == 0) {
     all_done_.notify_all();
@@ -402,16 +409,23 @@ void LocalBus::adopt(Connection connection) {
   connection_.emplace(std::move(connection));
   index_ = announced_ = consumed_ = reported_ = 0;
   queued_before_ = queue_.size();
-  Buffer& out = connection_->stream.out();
-  append_filters(out, filters_);
-  for (const auto& lane : sent_) {
-    for (const OfferedFrame& frame : lane) {
-      append_record(out, frame);
-    }
-  }
-  statistics_.resent += unacknowledged();
+  append_filters(connection_->stream.out(), filters_);
+  offered_.fill(0);
+  offer_again();
   flush();
   sendable_.set();
+}
+
+// Frames that the last hub did not report done, as many as this one lets be under way.
+void LocalBus::offer_again() {
+  for (std::size_t lane = 0; lane < lane_count; ++lane) {
+    const auto& sent = sent_.at(lane);
+    std::size_t& offered = offered_.at(lane);
+    while (offered < sent.size() && offered < connection_->welcome.window) {
+      append_record(connection_->stream.out(), sent.at(offered++));
+      ++statistics_.resent;
+    }
+  }
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 #include <sys/socket.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <roio/error.hpp>
 #include <utility>
 
@@ -26,6 +27,7 @@ constexpr std::uint32_t window_paced = 64;
 constexpr std::chrono::milliseconds check_interval{20};  // while somebody is waited for
 constexpr std::chrono::seconds idle_interval{1};         // to see an overdue greeting
 constexpr std::chrono::milliseconds finish_time{200};
+constexpr std::chrono::milliseconds accept_pause{100};
 
 }  // namespace
 
@@ -65,7 +67,7 @@ void Hub::wait() {
   std::vector<pollfd> entries;
   entries.reserve(clients_.size() + 2);
   entries.push_back({stop_.fd(), POLLIN, 0});
-  entries.push_back({clients_.size() < max_clients ? seat_.listener() : -1, POLLIN, 0});
+  entries.push_back({may_accept() ? seat_.listener() : -1, POLLIN, 0});
   for (const auto& client : clients_) {
     const int events = client->stream().flushed() ? POLLIN : POLLIN | POLLOUT;
     entries.push_back({client->stream().fd(), static_cast<short>(events), 0});
@@ -88,10 +90,17 @@ std::chrono::nanoseconds Hub::time_to_wait() const {
   return std::max(timeout, std::chrono::nanoseconds(0));
 }
 
+bool Hub::may_accept() const {
+  return clients_.size() < max_clients && now_ >= accept_again_;
+}
+
 void Hub::accept_clients() {
-  while (clients_.size() < max_clients) {
+  while (may_accept()) {
     UniqueFd socket(::accept4(seat_.listener(), nullptr, nullptr, SOCK_CLOEXEC | SOCK_NONBLOCK));
     if (!socket) {
+      if (errno != EAGAIN) {
+        accept_again_ = now_ + accept_pause;  // out of descriptors: they do not come back by asking
+      }
       return;
     }
     if (is_same_user(socket.get())) {

@@ -58,6 +58,7 @@ class Hub {
   void report_done();
   void drop_closed_clients();
   void finish();
+  [[nodiscard]] bool may_accept() const;
   [[nodiscard]] bool must_hold() const;
   [[nodiscard]] std::chrono::nanoseconds time_to_wait() const;
   [[nodiscard]] std::uint32_t window() const;
@@ -71,6 +72,7 @@ class Hub {
   std::uint64_t bus_number_ = 0;   // of the frame fanned out last
   std::uint64_t done_number_ = 0;  // of the frame last reported done
   Clock::time_point now_;
+  Clock::time_point accept_again_{};
   std::int64_t wall_offset_ns_ = 0;  // wall clock minus steady clock, looked at once a round
   std::thread thread_;               // last: it uses all of the above
 };

@@ -68,6 +68,7 @@ void HubClient::deliver(Deliver deliver, std::uint64_t bus_number, TimePoint now
   deliver.index = ++due_;
   append_record(stream_.out(), deliver);
   if (unflushed_.empty()) {
+    flush_checkpoint_ = flushed_;
     flush_time_ = now;
   }
   unflushed_.push_back(Unflushed{stream_.appended(), bus_number});
@@ -79,21 +80,25 @@ void HubClient::report_done(std::size_t lane, std::uint64_t sequence) {
 }
 
 void HubClient::append_done() {
-  if (std::exchange(done_changed_, false)) {
+  // One at a time is under way: a client that does not read must not pile them up.
+  if (done_changed_ && stream_.sent() >= done_end_) {
     append_record(stream_.out(), Done{done_});
+    done_changed_ = false;
+    done_end_ = stream_.appended();
   }
 }
 
 bool HubClient::flush(TimePoint now) {
-  const std::uint64_t before = stream_.sent();
   if (!stream_.flush()) {
     return false;
   }
-  if (stream_.sent() != before) {
-    flush_time_ = now;
-  }
   while (!unflushed_.empty() && unflushed_.front().end <= stream_.sent()) {
     unflushed_.pop_front();
+    ++flushed_;
+  }
+  if (flushed_ - flush_checkpoint_ >= reading) {
+    flush_checkpoint_ = flushed_;
+    flush_time_ = now;
   }
   return true;
 }

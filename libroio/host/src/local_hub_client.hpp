@@ -84,9 +84,13 @@ class HubClient {
   std::uint64_t checkpoint_ = 0;  // of consumed_, when the reader last showed that it reads
   TimePoint checkpoint_time_{};
   std::deque<Unflushed> unflushed_;
-  TimePoint flush_time_{};  // when the socket last took something, or had nothing to take
+  std::uint64_t flushed_ = 0;  // frames that the socket took
+  std::uint64_t flush_checkpoint_ =
+      0;  // of flushed_, when the socket last showed that it takes them
+  TimePoint flush_time_{};
   std::array<std::uint64_t, lane_count> done_{};
   bool done_changed_ = false;
+  std::uint64_t done_end_ = 0;  // where in the stream the last done record ends
   bool replay_due_ = false;
 };
 

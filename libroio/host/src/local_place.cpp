@@ -82,17 +82,17 @@ HubSeat::HubSeat(UniqueFd lock, UniqueFd listener, std::string lock_path, std::s
       socket_path_(std::move(socket_path)) {}
 
 HubSeat::~HubSeat() {
-  if (lock_) {
+  // Were the folder emptied meanwhile, what is there now would be another hub's.
+  if (lock_ && is_file_at(lock_, lock_path_)) {
     ::unlink(socket_path_.c_str());
     ::unlink(lock_path_.c_str());  // still locked: see Place::claim()
   }
 }
 
-Place::Place(const std::string& bus_name) : bus_name_(bus_name) {
-  const std::string path = folder();
-  make_private_folder(path);
-  socket_path_ = path + "/" + bus_name + ".sock";
-  lock_path_ = path + "/" + bus_name + ".lock";
+Place::Place(const std::string& bus_name) : bus_name_(bus_name), folder_(folder()) {
+  make_private_folder(folder_);
+  socket_path_ = folder_ + "/" + bus_name + ".sock";
+  lock_path_ = folder_ + "/" + bus_name + ".lock";
   static_cast<void>(address_of(socket_path_ + ".new"));  // too long: say so now
 }
 
@@ -112,6 +112,7 @@ UniqueFd Place::connect() const {
 }
 
 std::optional<HubSeat> Place::claim() const {
+  make_private_folder(folder_);  // it may have been cleaned away
   UniqueFd lock(::open(lock_path_.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, S_IRUSR | S_IWUSR));
   if (!lock) {
     fail(lock_path_);

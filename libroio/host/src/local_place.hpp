@@ -46,6 +46,7 @@ class Place {
 
  private:
   std::string bus_name_;
+  std::string folder_;
   std::string socket_path_;
   std::string lock_path_;
 };

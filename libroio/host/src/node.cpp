@@ -8,6 +8,12 @@
 #include <vector>
 
 namespace roio {
+namespace {
+
+// Looked through for a message after the deadline, before a call gives up on a bus that goes on.
+constexpr int max_late_batches = 16;
+
+}  // namespace
 
 Node::Node(std::unique_ptr<Bus> bus, Address own) : Node(std::move(bus), interest_of(own)) {}
 
@@ -53,11 +59,17 @@ Result Node::send(const Message& message, Timeout timeout) {
 
 Result Node::receive(ReceivedMessage& message, Timeout timeout) {
   const Deadline deadline(timeout);
+  int late_batches = 0;
   for (;;) {
     while (next_ < end_) {
       if (take(batch_[next_++], message)) {
         return Result::ok;
       }
+    }
+    // A bus gives what it has even when the time is up. Frames that are no message must not keep
+    // the call for ever, however many come.
+    if (deadline.passed() && late_batches++ == max_late_batches) {
+      return Result::timeout;
     }
     const Transfer transfer = bus_->receive(batch_, deadline.remaining());
     if (transfer.result != Result::ok) {

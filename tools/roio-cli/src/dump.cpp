@@ -27,8 +27,6 @@ constexpr Timeout look_around_every = std::chrono::milliseconds(200);
 // A local bus without a hub for longer than this is worth a word.
 constexpr Timeout hub_change_time = std::chrono::seconds(2);
 
-constexpr std::chrono::seconds longest_change_of_hands{2};
-
 // The log's own names: an interface's is at most 15 bytes long, and a local bus's goes without
 // "local:".
 std::string name_in_log(const std::string& bus_url) {
@@ -60,7 +58,8 @@ class Dump {
 
   int run() {
     last_shown_ = Clock::now();
-    while (!finished() && receive()) {
+    // A signal ends it though frames keep coming: a bus gives what it has even when cancelled.
+    while (!finished() && Interrupt::signal() == 0 && receive()) {
       if (Clock::now() >= next_look_) {
         announce_changes();
       }

@@ -1,4 +1,7 @@
 /// roio-cli: a person's, and a script's, way onto a Roio bus. Documented in docs/cli.md.
+#include <fcntl.h>
+#include <unistd.h>
+
 #include <exception>
 #include <roio/error.hpp>
 #include <string_view>
@@ -54,9 +57,20 @@ int run(int argc, const char* const* argv) {
   }
 }
 
+// A standard descriptor that was closed (`<&-`) would become the next thing opened: a bus's socket,
+// which then got what is printed. What stands in for it fails as a closed one does.
+void reserve_standard_descriptors() {
+  for (const int fd : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
+    if (::fcntl(fd, F_GETFD) == -1) {
+      static_cast<void>(::open("/dev/null", fd == STDIN_FILENO ? O_WRONLY : O_RDONLY));
+    }
+  }
+}
+
 }  // namespace
 }  // namespace roio::cli
 
 int main(int argc, char** argv) {
+  roio::cli::reserve_standard_descriptors();
   return roio::cli::run(argc, argv);
 }

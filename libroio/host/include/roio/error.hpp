@@ -15,7 +15,7 @@ enum class Errc {
   not_supported,        ///< This build has no such kind of bus.
   bitrate_mismatch,     ///< The local bus already runs at another bit rate.
   version_mismatch,     ///< The local bus is run by another, incompatible version.
-  not_permitted,        ///< The local bus belongs to another user.
+  not_permitted,        ///< The local bus, or its folder, is not this user's alone.
   too_many_filters,     ///< More filters than the backend takes.
   bad_frame,            ///< A frame that no bus carries: id, length or kind out of range.
   not_connected,        ///< The local bus could not be reached or taken over in time.
