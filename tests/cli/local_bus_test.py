@@ -136,6 +136,12 @@ class StdinTest(CliTest):
             dump.result(), (0, "0.10   -> 0.2     normal  message  [1]  07\n" * 2, "")
         )
 
+    def test_a_closed_input_is_an_error_not_a_wait(self):
+        done = subprocess.run(["sh", "-c", f'exec "{CLI}" send local:closed - <&-'],
+                              capture_output=True, text=True, timeout=60)
+        self.assertEqual((done.returncode, done.stderr.splitlines()[0]),
+                         (1, "roio-cli: standard input: Bad file descriptor"))
+
     def test_nothing_to_read_is_nothing_to_send(self):
         self.send(BUS, "-", stdin="")
 
