@@ -154,6 +154,10 @@ TEST(JsonRefusal, NumbersOutOfRange) {
        R"(JSON field "timestamp": -0.5; )"
        R"(expected seconds since 1970, a number 0..9223372036.854775807)",
        0},
+      {"before 1970 with an exponent", adding(R"("timestamp":-1e3)"),
+       R"(JSON field "timestamp": -1e3; )"
+       R"(expected seconds since 1970, a number 0..9223372036.854775807)",
+       0},
       {"a nanosecond too late", adding(R"("timestamp":9223372036.854775808)"),
        R"(JSON field "timestamp": 9223372036.854775808; )"
        R"(expected seconds since 1970, a number 0..9223372036.854775807)",
