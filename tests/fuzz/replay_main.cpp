@@ -91,6 +91,7 @@ int main(int argc, char** argv) {
   }
   std::for_each(corpus.begin(), corpus.end(), roio::fuzz::check);
   std::mt19937 generator = roio::test::seeded_generator();
+  std::cout.flush();  // an input that ends the program must not take its seed along
   for (int i = 0; i < changed_inputs; ++i) {
     Input input = corpus[up_to(generator, static_cast<std::uint32_t>(corpus.size() - 1))];
     for (std::uint32_t changes = 1 + up_to(generator, 3); changes > 0; --changes) {
