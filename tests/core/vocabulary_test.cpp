@@ -44,15 +44,20 @@ TEST(Address, EqualsOnlyItself) {
 }
 
 TEST(Status, EachHasItsOwnWords) {
-  const Status all[] = {Status::ok, Status::bad_argument, Status::full, Status::not_roio,
-                        Status::unknown_class};
+  const Status all[] = {Status::ok,         Status::bad_argument,  Status::full,
+                        Status::not_roio,   Status::unknown_class, Status::empty,
+                        Status::no_chip,    Status::wrong_mode,    Status::bad_timing,
+                        Status::wrong_clock};
   std::set<std::string> words;
   for (const Status status : all) {
     words.insert(to_string(status));
   }
-  EXPECT_EQ(words, (std::set<std::string>{"ok", "bad argument", "full", "not a Roio frame",
-                                          "unknown class"}));
-  EXPECT_STREQ(to_string(static_cast<Status>(5)), "unknown status");
+  EXPECT_EQ(words,
+            (std::set<std::string>{"ok", "bad argument", "full", "not a Roio frame",
+                                   "unknown class", "nothing received", "no controller answers",
+                                   "controller not in the mode asked for", "impossible bit timing",
+                                   "controller runs at another clock"}));
+  EXPECT_STREQ(to_string(static_cast<Status>(10)), "unknown status");
 }
 
 TEST(Version, TextIsTheNumbers) {

@@ -7,8 +7,10 @@
 /// A filter accepts the identifiers that equal it in every bit that its buffer's mask has set.
 /// Filters cannot be switched off, so an unused one repeats a used one. A frame that RXB0 accepts
 /// may roll over into RXB1 whatever RXB1's filters say; so what fits in RXB0's filters has two
-/// buffers to itself. Source: MCP2515 datasheet DS20001801, 4.5 "Message Acceptance Filters and
-/// Masks", registers RXFnSIDH..RXMnEID0.
+/// buffers to itself, and its order can be told: RXB1 is filled only while RXB0 is full. A frame
+/// that RXB1 alone accepts may come before or after the one found in RXB0, and nothing says which.
+/// Source: MCP2515 datasheet DS20001801, 4.5 "Message Acceptance Filters and Masks", registers
+/// RXFnSIDH..RXMnEID0.
 #ifndef ROIO_FILTER_MCP2515_HPP
 #define ROIO_FILTER_MCP2515_HPP
 
@@ -26,7 +28,8 @@ struct Mcp2515Filters {
 
   uint8_t mask[mask_count][4];
   uint8_t filter[filter_count][4];
-  bool exact;  ///< False: the chip lets through more than the program, and software must check.
+  bool exact;     ///< False: the chip lets through more than the program, and software must check.
+  bool in_order;  ///< Whether RXB0 accepts all that RXB1 does, so that a driver can keep the order.
 
   static constexpr uint8_t mask_of(uint8_t filter) { return filter < 2 ? 0 : 1; }
 };
@@ -209,6 +212,48 @@ constexpr FilterRule nobody() {
   return FilterRule{ClassField::mask() | SourceNodeField::mask(), id_mask, FilterMeaning::custom};
 }
 
+/// Fills in `exact` and `in_order` from the registers.
+inline void judge(Mcp2515Filters& image, const FilterRule* begin, const FilterRule* end) {
+  FilterRule accepted[Mcp2515Filters::filter_count];
+  image.exact = true;
+  for (uint8_t f = 0; f < Mcp2515Filters::filter_count; ++f) {
+    const uint32_t mask = from_mcp2515_registers(image.mask[Mcp2515Filters::mask_of(f)]);
+    accepted[f] =
+        FilterRule{from_mcp2515_registers(image.filter[f]) & mask, mask, FilterMeaning::custom};
+    image.exact = image.exact && covered(accepted[f], begin, end);
+  }
+  image.in_order = true;
+  for (uint8_t f = 2; f < Mcp2515Filters::filter_count; ++f) {
+    image.in_order = image.in_order && covered(accepted[f], accepted, accepted + 2);
+  }
+}
+
+/// One mask and two filters, in both buffers.
+inline void fill(Mcp2515Filters& image, uint32_t mask, uint32_t first, uint32_t second) {
+  for (uint8_t m = 0; m < Mcp2515Filters::mask_count; ++m) {
+    to_mcp2515_registers(mask, image.mask[m]);
+  }
+  for (uint8_t f = 0; f < Mcp2515Filters::filter_count; ++f) {
+    to_mcp2515_registers((f == 1 ? second : first) & mask, image.filter[f]);
+    image.filter[f][1] |= Mcp2515Filters::exide;
+  }
+}
+
+/// The mask that is left when rules are shared out over two filters: bit r of `second` puts rule r
+/// in the second one. A filter cannot compare the bits in which its rules differ.
+inline uint32_t shared_mask(const FilterRule* rules, uint8_t count, uint8_t second) {
+  uint32_t mask = id_mask;
+  const FilterRule* first_of[2] = {nullptr, nullptr};
+  for (uint8_t r = 0; r < count; ++r) {
+    const FilterRule*& first = first_of[(second >> r) & 1U];
+    if (first == nullptr) {
+      first = &rules[r];
+    }
+    mask &= rules[r].mask & ~(rules[r].match ^ first->match);
+  }
+  return mask;
+}
+
 }  // namespace detail
 
 /// Fits a program to the chip. Never rejects what the program accepts; where six filters behind two
@@ -251,19 +296,72 @@ Mcp2515Filters fit_mcp2515(const FilterProgram<Capacity>& program) {
   }
 
   Mcp2515Filters image;
-  image.exact = true;
   for (uint8_t m = 0; m < Mcp2515Filters::mask_count; ++m) {
     to_mcp2515_registers(masks[m], image.mask[m]);
   }
   for (uint8_t f = 0; f < Mcp2515Filters::filter_count; ++f) {
     // RXB0's first filter is always used; RXB1's first, when any of RXB1's is.
     const uint8_t source = used[f] ? f : f >= 2 && used[2] ? uint8_t{2} : uint8_t{0};
-    const uint32_t mask = masks[Mcp2515Filters::mask_of(f)];
-    const FilterRule accepted = {slots[source].match & mask, mask, FilterMeaning::custom};
-    to_mcp2515_registers(accepted.match, image.filter[f]);
+    to_mcp2515_registers(slots[source].match & masks[Mcp2515Filters::mask_of(f)], image.filter[f]);
     image.filter[f][1] |= Mcp2515Filters::exide;
-    image.exact = image.exact && detail::covered(accepted, program.begin(), program.end());
   }
+  detail::judge(image, program.begin(), program.end());
+  return image;
+}
+
+/// Fits a program to RXB0's two filters, and repeats them in RXB1: what a driver needs to keep the
+/// order of frames. Never rejects what the program accepts; where two filters behind one mask
+/// cannot say it exactly, lets through as few more identifiers as can be with each rule whole in
+/// one filter, for up to 8 rules; a longer program has its closest rules joined first. An empty
+/// program accepts one identifier that nobody sends. in_order is always true. At most 128 ways are
+/// looked at; no heap, no recursion but for `exact`.
+template <uint8_t Capacity>
+Mcp2515Filters fit_mcp2515_in_order(const FilterProgram<Capacity>& program) {
+  FilterRule rules[Capacity == 0 ? 1 : Capacity];
+  uint8_t count = 0;
+  for (const FilterRule& rule : program) {
+    rules[count++] = rule;
+  }
+  if (count == 0) {
+    rules[count++] = detail::nobody();
+  }
+  if (Capacity > detail::Mcp2515Search::max_rules) {
+    count = detail::shorten(rules, count, detail::Mcp2515Search::max_rules);
+  }
+  // Rule 0 is in the first filter: the other half of the ways are the same with names changed. Two
+  // filters accept twice as much as one behind the same mask.
+  uint8_t best = 0;
+  uint32_t fewest = UINT32_MAX;
+  for (uint8_t half = 0; half < (1U << (count - 1U)); ++half) {
+    const uint8_t second = static_cast<uint8_t>(half << 1);
+    const FilterRule shared = {0, detail::shared_mask(rules, count, second), FilterMeaning::custom};
+    const uint32_t accepted = (UINT32_C(1) << detail::open_bits(shared)) << (second != 0 ? 1 : 0);
+    if (accepted < fewest) {
+      fewest = accepted;
+      best = second;
+    }
+  }
+  uint8_t other = 0;
+  while (best != 0 && ((best >> other) & 1U) == 0) {
+    ++other;
+  }
+  Mcp2515Filters image;
+  detail::fill(image, detail::shared_mask(rules, count, best), rules[0].match, rules[other].match);
+  detail::judge(image, program.begin(), program.end());
+  return image;
+}
+
+/// The image of a plain node: its own address, and broadcasts to its own subnet. The same as
+/// compiling and fitting interest_of(own), for a fraction of the flash.
+/// @param own a valid source address; of another one the low bits are taken.
+inline Mcp2515Filters mcp2515_filters_of(Address own) {
+  constexpr uint32_t mask = DestinationSubnetField::mask() | DestinationNodeField::mask();
+  Mcp2515Filters image;
+  detail::fill(image, mask,
+               DestinationSubnetField::put(own.subnet) | DestinationNodeField::put(own.node),
+               DestinationSubnetField::put(own.subnet) | DestinationNodeField::put(broadcast_node));
+  image.exact = true;
+  image.in_order = true;
   return image;
 }
 

@@ -23,6 +23,11 @@ enum class Status : uint8_t {
   full,           ///< No room left; nothing was stored. Try again later, or with more room.
   not_roio,       ///< Not an extended data frame, so never a Roio message.
   unknown_class,  ///< A Roio frame of a class that this version does not know.
+  empty,          ///< Nothing has come in.
+  no_chip,        ///< The controller does not answer, or answers what it cannot have been told.
+  wrong_mode,     ///< The controller answers and does not enter the mode that it was asked for.
+  bad_timing,     ///< The bit timing breaks the controller's rules; no controller was touched.
+  wrong_clock,    ///< The controller's oscillator is not the one that the bit timing is for.
 };
 
 /// A short lower-case phrase, for logs and messages; never null.
@@ -32,6 +37,11 @@ constexpr const char* to_string(Status status) {
          : status == Status::full          ? "full"
          : status == Status::not_roio      ? "not a Roio frame"
          : status == Status::unknown_class ? "unknown class"
+         : status == Status::empty         ? "nothing received"
+         : status == Status::no_chip       ? "no controller answers"
+         : status == Status::wrong_mode    ? "controller not in the mode asked for"
+         : status == Status::bad_timing    ? "impossible bit timing"
+         : status == Status::wrong_clock   ? "controller runs at another clock"
                                            : "unknown status";
 }
 

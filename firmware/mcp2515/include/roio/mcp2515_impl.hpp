@@ -1,0 +1,676 @@
+// What mcp2515.hpp declares. Included by it, never by itself.
+#ifndef ROIO_MCP2515_IMPL_HPP
+#define ROIO_MCP2515_IMPL_HPP
+
+#include <roio/mcp2515.hpp>
+
+/// A member function of the driver, without its template arguments each time.
+#define ROIO_MCP2515_MEMBER(Type)                                             \
+  template <typename Port, uint8_t RxQueue, uint8_t TxQueue, typename Traits> \
+  Type Mcp2515<Port, RxQueue, TxQueue, Traits>
+
+namespace roio {
+
+namespace mcp2515 {
+constexpr uint8_t no_slot = 0xFF;
+constexpr uint16_t start_up_us = 200;        ///< 128 clocks (8.1) of any oscillator above 640 kHz.
+constexpr uint32_t mode_timeout_us = 50000;  ///< One frame at 5 kbit/s, and 11 bits.
+constexpr uint8_t calls_between_checks = 64;
+
+/// Sent from the chip to itself to time its oscillator; no five equal bits up to the CRC.
+constexpr uint32_t clock_frame_id = UINT32_C(0x0AAAAAAA);
+constexpr uint8_t clock_frame_data = 0x55;
+constexpr uint16_t clock_frame_bits = 131;
+constexpr uint8_t clock_frames = 3;
+constexpr uint32_t clock_timeout_us = 20000;
+constexpr uint8_t clock_tolerance = 8;  ///< One part in so many; crystals in use are 1 in 4 apart.
+}  // namespace mcp2515
+
+// --- single accesses
+// ------------------------------------------------------------------------------------
+
+ROIO_MCP2515_MEMBER(uint8_t)::read_register(Register address) {
+  uint8_t value;
+  read_registers(address, &value, 1);
+  return value;
+}
+
+ROIO_MCP2515_MEMBER(void)::read_registers(Register address, uint8_t* values, uint8_t count) {
+  Transaction transaction(port_);
+  transaction.exchange(static_cast<uint8_t>(Instruction::read));
+  transaction.exchange(static_cast<uint8_t>(address));
+  for (uint8_t i = 0; i < count; ++i) {
+    values[i] = transaction.exchange(0);
+  }
+}
+
+ROIO_MCP2515_MEMBER(void)::write_registers(Register address, const uint8_t* values, uint8_t count) {
+  Transaction transaction(port_);
+  transaction.exchange(static_cast<uint8_t>(Instruction::write));
+  transaction.exchange(static_cast<uint8_t>(address));
+  for (uint8_t i = 0; i < count; ++i) {
+    transaction.exchange(values[i]);
+  }
+}
+
+ROIO_MCP2515_MEMBER(void)::modify_register(Register address, uint8_t mask, uint8_t value) {
+  Transaction transaction(port_);
+  transaction.exchange(static_cast<uint8_t>(Instruction::bit_modify));
+  transaction.exchange(static_cast<uint8_t>(address));
+  transaction.exchange(mask);
+  transaction.exchange(value);
+}
+
+ROIO_MCP2515_MEMBER(bool)::write_and_compare(Register address, const uint8_t* values,
+                                             uint8_t count) {
+  write_registers(address, values, count);
+  Transaction transaction(port_);
+  transaction.exchange(static_cast<uint8_t>(Instruction::read));
+  transaction.exchange(static_cast<uint8_t>(address));
+  bool same = true;
+  for (uint8_t i = 0; i < count; ++i) {
+    same = transaction.exchange(0) == values[i] && same;
+  }
+  return same;
+}
+
+ROIO_MCP2515_MEMBER(uint8_t)::read_quick_status() {
+  Transaction transaction(port_);
+  transaction.exchange(static_cast<uint8_t>(Instruction::read_status));
+  return transaction.exchange(0);
+}
+
+ROIO_MCP2515_MEMBER(void)::read_error_counters(uint8_t& transmit, uint8_t& receive) {
+  uint8_t counters[2];
+  read_registers(Register::tec, counters, 2);
+  transmit = counters[0];
+  receive = counters[1];
+}
+
+// --- starting
+// -------------------------------------------------------------------------------------------
+
+ROIO_MCP2515_MEMBER(void)::pause(uint16_t microseconds) {
+  const uint32_t start = port_.microseconds();
+  while (port_.microseconds() - start < microseconds) {
+  }
+}
+
+// A reset that comes before the oscillator runs is lost, so it is repeated until the registers show
+// one.
+ROIO_MCP2515_MEMBER(bool)::reset_chip(uint16_t timeout_ms) {
+  const uint32_t start = port_.microseconds();
+  do {
+    {
+      Transaction transaction(port_);
+      transaction.exchange(static_cast<uint8_t>(Instruction::reset));
+    }
+    pause(mcp2515::start_up_us);
+    uint8_t values[2];  // CANSTAT, CANCTRL
+    read_registers(Register::canstat, values, 2);
+    if (values[0] == static_cast<uint8_t>(mcp2515::Mode::configuration) &&
+        (values[1] & ~mcp2515::Control::mode_mask) == mcp2515::Control::clock_out) {
+      return true;
+    }
+  } while (port_.microseconds() - start < timeout_ms * UINT32_C(1000));
+  return false;
+}
+
+ROIO_MCP2515_MEMBER(bool)::configure(const Mcp2515Config& config) {
+  using mcp2515::Cnf;
+  using mcp2515::Interrupt;
+  using mcp2515::RxControl;
+  const Mcp2515Filters& filters = config.filters;
+  const uint8_t interrupts =
+      Port::has_interrupt_line ? Interrupt::rx0 | Interrupt::rx1 | Interrupt::error : 0;
+  // From the masks on: CNF3, CNF2, CNF1, CANINTE, CANINTF. The three TXnIF are set and never
+  // cleared, so that every READ STATUS shows whether the chip still knows what it was told.
+  const uint8_t setup[13] = {
+      filters.mask[0][0],       filters.mask[0][1],       filters.mask[0][2],
+      filters.mask[0][3],       filters.mask[1][0],       filters.mask[1][1],
+      filters.mask[1][2],       filters.mask[1][3],       Cnf::cnf3(config.timing),
+      Cnf::cnf2(config.timing), Cnf::cnf1(config.timing), interrupts,
+      Interrupt::tx_any};
+  bool same = write_and_compare(Register::rxf0sidh, filters.filter[0], 12);
+  same = write_and_compare(Register::rxf3sidh, filters.filter[3], 12) && same;
+  same = write_and_compare(Register::rxm0sidh, setup, sizeof setup) && same;
+  const uint8_t acceptance = config.everything ? RxControl::everything : RxControl::by_filters;
+  const uint8_t rx0 = acceptance | RxControl::rollover;
+  write_registers(Register::rxb0ctrl, &rx0, 1);
+  write_registers(Register::rxb1ctrl, &acceptance, 1);
+  for (uint8_t slot = 0; slot < 3; ++slot) {
+    priority_[slot] = slot == urgent_slot ? urgent_level : highest_normal_level;
+    same = write_and_compare(mcp2515::txbctrl(slot), &priority_[slot], 1) && same;
+  }
+  return same;
+}
+
+ROIO_MCP2515_MEMBER(bool)::enter_mode(uint8_t control) {
+  write_registers(Register::canctrl, &control, 1);
+  const uint32_t start = port_.microseconds();
+  do {
+    if (((read_register(Register::canstat) ^ control) & mcp2515::Control::mode_mask) == 0) {
+      return true;
+    }
+  } while (port_.microseconds() - start < mcp2515::mode_timeout_us);
+  return false;
+}
+
+ROIO_MCP2515_MEMBER(Status)::begin(const Mcp2515Config& config) {
+  using mcp2515::Control;
+  if (!is_valid(config.timing)) {
+    return Status::bad_timing;
+  }
+  if (config.everything && !Traits::all_kinds) {
+    return Status::bad_argument;
+  }
+  forget_chip();
+  if (!reset_chip(config.start_timeout_ms) || !configure(config)) {
+    return Status::no_chip;
+  }
+  control_ = static_cast<uint8_t>(static_cast<uint8_t>(config.mode) | Control::clock_out |
+                                  (config.one_shot ? Control::one_shot : 0));
+  if (!enter_mode(control_)) {
+    // Not later either, when nobody expects it any more.
+    const uint8_t configuration =
+        static_cast<uint8_t>(mcp2515::Mode::configuration) | Control::clock_out;
+    write_registers(Register::canctrl, &configuration, 1);
+    return Status::wrong_mode;
+  }
+  running_ = true;
+  return Status::ok;
+}
+
+ROIO_MCP2515_MEMBER(Status)::check_clock(const Mcp2515Config& config, uint32_t osc_hz,
+                                         uint32_t& measured_hz) {
+  using mcp2515::Control;
+  measured_hz = 0;
+  if (!is_valid(config.timing)) {
+    return Status::bad_timing;
+  }
+  forget_chip();
+  if (!reset_chip(config.start_timeout_ms) || !configure(config)) {
+    return Status::no_chip;
+  }
+  if (!enter_mode(static_cast<uint8_t>(mcp2515::Mode::loopback) | Control::clock_out)) {
+    return Status::wrong_mode;
+  }
+  uint8_t image[13] = {0, 0, 0, 0, max_data_length};
+  to_mcp2515_registers(mcp2515::clock_frame_id, image);
+  image[1] |= mcp2515::extended_bit;
+  for (uint8_t i = 5; i < sizeof image; ++i) {
+    image[i] = mcp2515::clock_frame_data;
+  }
+  uint8_t all = 0;
+  for (uint8_t slot = 0; slot < mcp2515::clock_frames; ++slot) {
+    // SIDH is the register behind TXBnCTRL.
+    write_registers(static_cast<Register>(static_cast<uint8_t>(mcp2515::txbctrl(slot)) + 1U), image,
+                    sizeof image);
+    all |= mcp2515::request_to_send(slot);
+  }
+  {
+    Transaction transaction(port_);
+    transaction.exchange(all);
+  }
+  const uint32_t start = port_.microseconds();
+  const uint8_t requested = QuickStatus::txreq(0) | QuickStatus::txreq(1) | QuickStatus::txreq(2);
+  uint32_t elapsed_us = 0;
+  const uint32_t clocks = UINT32_C(2) * mcp2515::clock_frames * mcp2515::clock_frame_bits *
+                          config.timing.prescaler * quanta_per_bit(config.timing);
+  const uint32_t expected_us = clocks / (osc_hz / 1000U) * 1000U;
+  do {
+    elapsed_us = port_.microseconds() - start;
+    if ((read_quick_status() & requested) == 0) {
+      break;
+    }
+  } while (elapsed_us < mcp2515::clock_timeout_us + 2U * expected_us);
+  const uint8_t configuration =
+      static_cast<uint8_t>(mcp2515::Mode::configuration) | Control::clock_out;
+  if (!enter_mode(configuration) || elapsed_us == 0) {
+    return Status::no_chip;
+  }
+  const uint32_t measured_khz = clocks * 100U / elapsed_us * 10U;
+  const uint32_t told_khz = osc_hz / 1000U;
+  const uint32_t difference =
+      measured_khz > told_khz ? measured_khz - told_khz : told_khz - measured_khz;
+  measured_hz = measured_khz * 1000U;
+  return difference <= told_khz / mcp2515::clock_tolerance ? Status::ok : Status::wrong_clock;
+}
+
+// --- what READ STATUS shows
+// -----------------------------------------------------------------------------
+
+/// The three TXnIF are set, and the chip sends nothing but what it was told to. A chip that was
+/// reset, and lines stuck at 0 or 1, look different.
+ROIO_MCP2515_MEMBER(bool)::is_plausible(uint8_t quick) const {
+  const uint8_t ours = static_cast<uint8_t>(((pending_ & 1U) << 2) | ((pending_ & 2U) << 3) |
+                                            ((pending_ & 4U) << 4));
+  return (quick & ~(QuickStatus::any_rx | ours)) == QuickStatus::txif;
+}
+
+ROIO_MCP2515_MEMBER(void)::note(uint8_t quick) {
+  fresh_ = true;
+  if (!is_plausible(quick)) {
+    check_chip();
+    return;
+  }
+  quick_ = quick & QuickStatus::any_rx;
+  // RXB1 alone was filled while RXB0 was full, and RXB0 has been read: what comes next into RXB0 is
+  // younger.
+  if (quick_ != QuickStatus::any_rx) {
+    rx1_is_older_ = quick_ == QuickStatus::rx1;
+  }
+  settle(quick);
+}
+
+// --- receiving
+// ------------------------------------------------------------------------------------------
+
+/// Whether a frame waits in the chip, as far as is known or can be seen.
+ROIO_MCP2515_MEMBER(bool)::find_received() {
+  if (quick_ != 0) {
+    return true;
+  }
+  // Looked at already in this call, or nothing to look for.
+  if (fresh_ || (Port::has_interrupt_line && !port_.interrupt_line_is_low())) {
+    return false;
+  }
+  note(read_quick_status());
+  if (Port::has_interrupt_line && quick_ == 0) {
+    check_due_ = true;  // then it is an error that pulls the line
+  }
+  return quick_ != 0;
+}
+
+/// Takes the older frame out of the chip. There must be one.
+/// @return whether it is one for the program.
+ROIO_MCP2515_MEMBER(bool)::fetch(Frame& frame) {
+  const bool first = (quick_ & QuickStatus::rx0) != 0 && !rx1_is_older_;
+  if (quick_ == QuickStatus::any_rx) {
+    check_due_ = true;  // with both full, a third may have been lost
+  }
+  if (!read_rx_buffer(first ? 0 : 1, frame)) {
+    return false;
+  }
+  if (!Traits::all_kinds && frame.kind != FrameKind::extended) {
+    ++counters_.foreign;
+    return false;
+  }
+  ++counters_.received;
+  return true;
+}
+
+/// Reads a buffer, which frees it, and finds out what has come meanwhile.
+///
+/// The order of two full buffers is not in any register; it follows from what was seen when. RXB0
+/// is filled first, RXB1 only while RXB0 is full. So with both full RXB0 is older, unless RXB1 was
+/// full already when RXB0 was freed. Whether it was, shows right after: a frame takes longer on the
+/// bus than the look does, so at most one can have come in between, and that one went to RXB0.
+/// Nothing may interrupt the two.
+/// @return false: the chip was lost meanwhile, the frame cannot be trusted.
+ROIO_MCP2515_MEMBER(bool)::read_rx_buffer(uint8_t buffer, Frame& frame) {
+  uint8_t quick = 0;
+  bool looked = false;
+  {
+    Transaction transaction(port_);
+    read_frame(transaction, buffer, frame);
+    quick_ &= static_cast<uint8_t>(~(1U << buffer));
+    if (quick_ == 0) {
+      typename Port::Uninterrupted together(port_);
+      transaction.restart();
+      looked = !Port::has_interrupt_line || port_.interrupt_line_is_low();
+      if (looked) {
+        transaction.exchange(static_cast<uint8_t>(Instruction::read_status));
+        quick = transaction.exchange(0);
+      }
+    }
+  }
+  if (!looked) {
+    // Either the other buffer is known to be full, and what is left in RXB1 is the older one from
+    // now on; or the interrupt line says that nothing is there.
+    rx1_is_older_ = quick_ == QuickStatus::rx1;
+    return true;
+  }
+  rx1_is_older_ = false;
+  note(quick);
+  if (buffer == 0) {
+    rx1_is_older_ = (quick_ & QuickStatus::rx1) != 0;
+  }
+  if (quick_ != 0) {
+    check_due_ = check_due_ || buffer == 1 || rx1_is_older_;  // both were full for a while
+  }
+  if (!running_) {
+    ++counters_.discarded;
+  }
+  return running_;
+}
+
+/// The buffer's bytes, only as many as the frame has. DLC 9..15 is 8 bytes (ISO 11898-1).
+ROIO_MCP2515_MEMBER(void)::read_frame(Transaction& transaction, uint8_t buffer, Frame& frame) {
+  transaction.exchange(mcp2515::read_rx(buffer));
+  uint8_t id[4];
+  for (uint8_t i = 0; i < sizeof id; ++i) {
+    id[i] = transaction.exchange(0);
+  }
+  const uint8_t dlc = transaction.exchange(0);
+  const bool extended = (id[1] & mcp2515::extended_bit) != 0;
+  const bool remote =
+      extended ? (dlc & mcp2515::remote_bit) != 0 : (id[1] & mcp2515::standard_remote_bit) != 0;
+  frame.id = from_mcp2515_registers(id);
+  if (!extended) {
+    frame.id >>= 18;
+  }
+  frame.kind = extended ? (remote ? FrameKind::extended_remote : FrameKind::extended)
+                        : (remote ? FrameKind::standard_remote : FrameKind::standard);
+  frame.length = dlc & 0x0FU;
+  if (frame.length > max_data_length) {
+    frame.length = max_data_length;
+  }
+  for (uint8_t i = 0; i < max_data_length; ++i) {
+    frame.data[i] = !remote && i < frame.length ? transaction.exchange(0) : uint8_t{0};
+  }
+}
+
+ROIO_MCP2515_MEMBER(Status)::receive(Frame& frame) {
+  if (rx_queue_.empty() && RxQueue > 0) {
+    poll();
+  }
+  if (!rx_queue_.empty()) {
+    frame = rx_queue_.front();
+    rx_queue_.pop();
+    return Status::ok;
+  }
+  if (!running_) {
+    return Status::no_chip;
+  }
+  bool received = false;
+  if (RxQueue == 0) {
+    fresh_ = false;
+    // As many as the chip holds, so that frames for others keep nobody here.
+    for (uint8_t i = 0; i < 2 && !received && find_received(); ++i) {
+      received = fetch(frame);
+    }
+    tend();
+  }
+  return received ? Status::ok : running_ ? Status::empty : Status::no_chip;
+}
+
+ROIO_MCP2515_MEMBER(Status)::poll() {
+  if (!running_) {
+    return Status::no_chip;
+  }
+  fresh_ = false;
+  for (uint8_t i = 0; i < RxQueue + 2U && !rx_queue_.full() && find_received(); ++i) {
+    if (fetch(rx_queue_.next())) {
+      rx_queue_.commit();
+    }
+  }
+  tend();
+  return running_ ? Status::ok : Status::no_chip;
+}
+
+// --- sending
+// --------------------------------------------------------------------------------------------
+
+ROIO_MCP2515_MEMBER(Status)::send(const Frame& frame, uint8_t token) {
+  if (!is_sendable(frame)) {
+    return Status::bad_argument;
+  }
+  if (!running_) {
+    return Status::no_chip;
+  }
+  const Waiting entry = {frame, token};
+  if (!give_to_chip(entry)) {
+    // Only the chip knows whether it has room by now.
+    note(read_quick_status());
+    pump();
+    if (!running_) {
+      return Status::no_chip;
+    }
+    if (!give_to_chip(entry)) {
+      return enqueue(entry);
+    }
+  }
+  return Status::ok;
+}
+
+/// Whether no frame waits that has to go first, and the chip has room; then it is there.
+ROIO_MCP2515_MEMBER(bool)::give_to_chip(const Waiting& entry) {
+  const bool urgent = is_urgent(entry.frame);
+  const bool goes_next = tx_queue_.empty() || (urgent && !is_urgent(tx_queue_.front().frame));
+  return goes_next && load(entry);
+}
+
+ROIO_MCP2515_MEMBER(Status)::enqueue(const Waiting& entry) {
+  if (tx_queue_.full() || aborting_) {
+    return Status::full;
+  }
+  uint8_t place = tx_queue_.size();
+  tx_queue_.commit();
+  if (is_urgent(entry.frame)) {
+    while (place > 0) {
+      const uint8_t ahead = static_cast<uint8_t>(place - 1U);
+      if (is_urgent(tx_queue_[ahead].frame)) {
+        break;
+      }
+      tx_queue_[place] = tx_queue_[ahead];
+      place = ahead;
+    }
+  }
+  tx_queue_[place] = entry;
+  return Status::ok;
+}
+
+ROIO_MCP2515_MEMBER(void)::pump() {
+  while (!tx_queue_.empty() && load(tx_queue_.front())) {
+    tx_queue_.pop();
+  }
+}
+
+/// Which transmit buffer the next frame may go to, and with which priority.
+///
+/// The chip sends the highest TXP first and, among equals, the highest buffer. So a frame that must
+/// come after the one in buffer 2 goes to buffer 1 with the same TXP, and one that must come after
+/// the one in buffer 1 to buffer 2 with a lower TXP; at 0 the chip has to run empty once. Buffer 0
+/// has TXP 3, above all of these, and takes no normal frame: so an urgent one never waits for a
+/// normal one to win the bus.
+ROIO_MCP2515_MEMBER(uint8_t)::choose_slot(bool urgent, uint8_t& level) const {
+  const uint8_t normal = pending_ & 0x06U;
+  if (urgent || Traits::only_buffer_0) {
+    level = urgent_level;
+    return (pending_ & 0x01U) == 0 ? urgent_slot : mcp2515::no_slot;
+  }
+  switch (normal) {
+    case 0:
+      level = highest_normal_level;
+      return 2;
+    case 0x04:
+      level = level_;
+      return 1;
+    case 0x02:
+      level = static_cast<uint8_t>(level_ - 1U);
+      return level_ > 0 ? 2 : mcp2515::no_slot;
+    default:
+      return mcp2515::no_slot;
+  }
+}
+
+ROIO_MCP2515_MEMBER(bool)::load(const Waiting& entry) {
+  uint8_t level = 0;
+  const bool urgent = is_urgent(entry.frame);
+  const uint8_t slot = aborting_ ? mcp2515::no_slot : choose_slot(urgent, level);
+  if (slot == mcp2515::no_slot) {
+    return false;
+  }
+  const Frame& frame = entry.frame;
+  const bool extended = is_extended(frame.kind);
+  uint8_t id[4];
+  to_mcp2515_registers(extended ? frame.id : frame.id << 18, id);
+  {
+    Transaction transaction(port_);
+    if (priority_[slot] == level) {
+      transaction.exchange(mcp2515::load_tx(slot));
+    } else {
+      // TXBnCTRL lies right before the buffer: one write does for both.
+      transaction.exchange(static_cast<uint8_t>(Instruction::write));
+      transaction.exchange(static_cast<uint8_t>(mcp2515::txbctrl(slot)));
+      transaction.exchange(level);
+      priority_[slot] = level;
+    }
+    transaction.exchange(id[0]);
+    transaction.exchange(static_cast<uint8_t>(id[1] | (extended ? mcp2515::extended_bit : 0U)));
+    transaction.exchange(id[2]);
+    transaction.exchange(id[3]);
+    const bool remote = is_remote(frame.kind);
+    transaction.exchange(static_cast<uint8_t>(frame.length | (remote ? mcp2515::remote_bit : 0U)));
+    for (uint8_t i = 0; i < frame.length && !remote; ++i) {
+      transaction.exchange(frame.data[i]);
+    }
+    // By RTS, never by writing TXREQ: errata item 5.
+    transaction.restart();
+    transaction.exchange(mcp2515::request_to_send(slot));
+  }
+  pending_ |= static_cast<uint8_t>(1U << slot);
+  token_[slot] = entry.token;
+  if (slot != urgent_slot) {
+    level_ = level;
+  }
+  return true;
+}
+
+/// Finds the transmissions that have come to their end.
+ROIO_MCP2515_MEMBER(void)::settle(uint8_t quick) {
+  for (uint8_t slot = 0; slot < 3; ++slot) {
+    const uint8_t bit = static_cast<uint8_t>(1U << slot);
+    if ((pending_ & bit) != 0 && (quick & QuickStatus::txreq(slot)) == 0) {
+      pending_ &= static_cast<uint8_t>(~bit);
+      report(token_[slot], outcome_of(slot));
+    }
+  }
+}
+
+/// A request ends by success, unless somebody has asked for less.
+ROIO_MCP2515_MEMBER(TxOutcome)::outcome_of(uint8_t slot) {
+  using mcp2515::TxControl;
+  const bool one_shot = (control_ & mcp2515::Control::one_shot) != 0;
+  if (!aborting_ && !one_shot) {
+    return TxOutcome::sent;
+  }
+  const uint8_t control = read_register(mcp2515::txbctrl(slot));
+  if ((control & (TxControl::lost_arbitration | TxControl::error)) != 0 && one_shot) {
+    return TxOutcome::failed;
+  }
+  return (control & TxControl::aborted) != 0 ? TxOutcome::aborted : TxOutcome::sent;
+}
+
+ROIO_MCP2515_MEMBER(void)::report(uint8_t token, TxOutcome outcome) {
+  if (outcome == TxOutcome::sent) {
+    ++counters_.sent;
+  } else if (outcome == TxOutcome::unknown) {
+    ++counters_.unknown;
+  } else {
+    ++counters_.not_sent;
+  }
+  traits_.on_outcome(token, outcome);
+}
+
+ROIO_MCP2515_MEMBER(void)::abort() {
+  while (!tx_queue_.empty()) {
+    const uint8_t token = tx_queue_.front().token;
+    tx_queue_.pop();
+    report(token, TxOutcome::aborted);
+  }
+  if (running_ && pending_ != 0) {
+    aborting_ = true;
+    modify_register(Register::canctrl, mcp2515::Control::abort_all, mcp2515::Control::abort_all);
+  }
+}
+
+// --- looking after the chip
+// -----------------------------------------------------------------------------
+
+/// What is done at the end of every call that has time.
+ROIO_MCP2515_MEMBER(void)::tend() {
+  const bool somebody_waits =
+      !tx_queue_.empty() || aborting_ || (Traits::reports_outcomes && pending_ != 0);
+  if (running_ && somebody_waits && !fresh_) {
+    note(read_quick_status());
+  }
+  if (aborting_ && pending_ == 0) {
+    modify_register(Register::canctrl, mcp2515::Control::abort_all, 0);
+    aborting_ = false;
+  }
+  if (running_) {
+    pump();
+  }
+  ++calls_;
+  if (running_ && ((check_due_ && quick_ == 0) || calls_ >= mcp2515::calls_between_checks)) {
+    check_chip();
+  }
+}
+
+/// Looks whether the chip is what begin() made of it, and at its error flags.
+ROIO_MCP2515_MEMBER(void)::check_chip() {
+  using mcp2515::Control;
+  using mcp2515::ErrorFlag;
+  using mcp2515::Interrupt;
+  uint8_t values[4];  // CANINTF, EFLG, CANSTAT, CANCTRL
+  read_registers(Register::canintf, values, sizeof values);
+  const uint8_t flags = values[0];
+  const uint8_t errors = values[1];
+  calls_ = 0;
+  check_due_ = false;
+  if ((flags & Interrupt::tx_any) != Interrupt::tx_any ||
+      ((values[2] ^ control_) & Control::mode_mask) != 0 ||
+      (values[3] & ~Control::abort_all) != control_) {
+    forget_chip();
+    ++counters_.chip_losses;
+    return;
+  }
+  const uint8_t seen = flags & (Interrupt::error | Interrupt::message_error);
+  if (seen != 0) {
+    modify_register(Register::canintf, seen, 0);
+  }
+  if ((seen & Interrupt::message_error) != 0) {
+    ++counters_.message_errors;
+  }
+  if ((errors & ErrorFlag::any_overflow) != 0) {
+    ++counters_.overflows;
+    modify_register(Register::eflg, errors & ErrorFlag::any_overflow, 0);
+  }
+  if ((errors & ~error_flags_ & ErrorFlag::bus_off) != 0) {
+    ++counters_.bus_offs;
+  }
+  error_flags_ = errors;
+}
+
+/// The chip has no memory of what it was told. What it had to send may or may not have gone out.
+ROIO_MCP2515_MEMBER(void)::forget_chip() {
+  running_ = false;
+  quick_ = 0;
+  rx1_is_older_ = false;
+  aborting_ = false;
+  check_due_ = false;
+  error_flags_ = 0;
+  for (uint8_t slot = 0; slot < 3; ++slot) {
+    if ((pending_ & (1U << slot)) != 0) {
+      report(token_[slot], TxOutcome::unknown);
+    }
+  }
+  pending_ = 0;
+}
+
+ROIO_MCP2515_MEMBER(Mcp2515State)::state() const {
+  using mcp2515::ErrorFlag;
+  return (error_flags_ & ErrorFlag::bus_off) != 0 ? Mcp2515State::bus_off
+         : (error_flags_ & (ErrorFlag::rx_passive | ErrorFlag::tx_passive)) != 0
+             ? Mcp2515State::passive
+         : (error_flags_ & ErrorFlag::warning) != 0 ? Mcp2515State::warning
+                                                    : Mcp2515State::active;
+}
+
+}  // namespace roio
+
+#undef ROIO_MCP2515_MEMBER
+
+#endif

@@ -1,0 +1,145 @@
+/// The MCP2515's instructions and registers, as far as the driver needs them.
+/// Source: MCP2515 datasheet DS20001801, 11 "Register Description", 12 "SPI Interface".
+#ifndef ROIO_MCP2515_REGISTERS_HPP
+#define ROIO_MCP2515_REGISTERS_HPP
+
+#include <stdint.h>
+
+#include <roio/bit_timing.hpp>
+
+namespace roio {
+namespace mcp2515 {
+
+/// SPI instructions (table 12-1).
+enum class Instruction : uint8_t {
+  reset = 0xC0,
+  read = 0x03,
+  write = 0x02,
+  bit_modify = 0x05,
+  read_status = 0xA0,
+  load_tx_buffer = 0x40,   ///< | load_tx()
+  request_to_send = 0x80,  ///< | one bit a buffer
+  read_rx_buffer = 0x90,   ///< | read_rx()
+};
+
+/// Registers (table 11-1).
+enum class Register : uint8_t {
+  rxf0sidh = 0x00,
+  canstat = 0x0E,
+  canctrl = 0x0F,
+  rxf3sidh = 0x10,
+  tec = 0x1C,
+  rec = 0x1D,
+  rxm0sidh = 0x20,
+  cnf3 = 0x28,
+  canintf = 0x2C,
+  eflg = 0x2D,
+  txb0ctrl = 0x30,
+  rxb0ctrl = 0x60,
+  rxb1ctrl = 0x70,
+};
+
+/// READ RX BUFFER from SIDH on, of buffer 0 or 1.
+constexpr uint8_t read_rx(uint8_t buffer) {
+  return static_cast<uint8_t>(static_cast<uint8_t>(Instruction::read_rx_buffer) | (buffer << 2));
+}
+/// LOAD TX BUFFER from SIDH on, of buffer 0 to 2.
+constexpr uint8_t load_tx(uint8_t buffer) {
+  return static_cast<uint8_t>(static_cast<uint8_t>(Instruction::load_tx_buffer) | (buffer << 1));
+}
+constexpr uint8_t request_to_send(uint8_t buffer) {
+  return static_cast<uint8_t>(static_cast<uint8_t>(Instruction::request_to_send) | (1U << buffer));
+}
+constexpr Register txbctrl(uint8_t buffer) {
+  return static_cast<Register>(static_cast<uint8_t>(Register::txb0ctrl) + 0x10U * buffer);
+}
+
+/// The byte that READ STATUS returns (figure 12-8):
+///   7      6       5      4       3      2       1      0
+///   TX2IF  TXREQ2  TX1IF  TXREQ1  TX0IF  TXREQ0  RX1IF  RX0IF
+struct QuickStatus {
+  static constexpr uint8_t rx0 = 0x01;
+  static constexpr uint8_t rx1 = 0x02;
+  static constexpr uint8_t any_rx = rx0 | rx1;
+  static constexpr uint8_t txif = 0x08 | 0x20 | 0x80;
+  static constexpr uint8_t txreq(uint8_t buffer) {
+    return static_cast<uint8_t>(0x04U << (2U * buffer));
+  }
+};
+
+/// CANINTE and CANINTF (registers 7-1, 7-2).
+struct Interrupt {
+  static constexpr uint8_t rx0 = 0x01;
+  static constexpr uint8_t rx1 = 0x02;
+  static constexpr uint8_t tx_any = 0x1C;
+  static constexpr uint8_t error = 0x20;
+  static constexpr uint8_t message_error = 0x80;
+};
+
+/// EFLG (register 6-3).
+struct ErrorFlag {
+  static constexpr uint8_t warning = 0x01;
+  static constexpr uint8_t rx_passive = 0x08;
+  static constexpr uint8_t tx_passive = 0x10;
+  static constexpr uint8_t bus_off = 0x20;
+  static constexpr uint8_t rx0_overflow = 0x40;
+  static constexpr uint8_t rx1_overflow = 0x80;
+  static constexpr uint8_t any_overflow = rx0_overflow | rx1_overflow;
+};
+
+/// TXBnCTRL (register 3-1).
+struct TxControl {
+  static constexpr uint8_t aborted = 0x40;
+  static constexpr uint8_t lost_arbitration = 0x20;
+  static constexpr uint8_t error = 0x10;
+  static constexpr uint8_t request = 0x08;
+  static constexpr uint8_t failed = aborted | lost_arbitration | error;
+};
+
+/// RXBnCTRL (registers 4-1, 4-2). RXM is 00, by filters, or 11, everything; 01 and 10 are reserved.
+struct RxControl {
+  static constexpr uint8_t by_filters = 0x00;
+  static constexpr uint8_t everything = 0x60;
+  static constexpr uint8_t rollover = 0x04;
+};
+
+/// SIDL, DLC of a buffer.
+constexpr uint8_t extended_bit = 0x08;         // EXIDE, IDE
+constexpr uint8_t standard_remote_bit = 0x10;  // SRR, received standard frames only
+constexpr uint8_t remote_bit = 0x40;           // RTR: to be sent, and in received extended frames
+
+/// CANCTRL (register 10-1) and the mode field that CANSTAT shares with it.
+struct Control {
+  static constexpr uint8_t mode_mask = 0xE0;
+  static constexpr uint8_t abort_all = 0x10;
+  static constexpr uint8_t one_shot = 0x08;
+  /// CLKEN and CLKPRE as a reset leaves them. Not 0, so that a line stuck at 0 is noticed.
+  static constexpr uint8_t clock_out = 0x07;
+};
+enum class Mode : uint8_t {
+  normal = 0x00,
+  loopback = 0x40,
+  listen_only = 0x60,
+  configuration = 0x80,
+};
+
+/// CNF1..3 (registers 5-1 to 5-3).
+///   CNF1 = SJW-1 in 7..6, BRP in 5..0 | CNF2 = BTLMODE, SAM, PS1-1 in 5..3, PropSeg-1 in 2..0 |
+///   CNF3 = PS2-1 in 2..0
+struct Cnf {
+  static constexpr uint8_t cnf1(const BitTiming& t) {
+    return static_cast<uint8_t>(((t.sjw - 1U) << 6) | (t.prescaler - 1U));
+  }
+  static constexpr uint8_t cnf2(const BitTiming& t) {
+    return static_cast<uint8_t>(0x80U | (t.triple_sampling ? 0x40U : 0U) |
+                                ((t.phase_seg1 - 1U) << 3) | (t.prop_seg - 1U));
+  }
+  static constexpr uint8_t cnf3(const BitTiming& t) {
+    return static_cast<uint8_t>(t.phase_seg2 - 1U);
+  }
+};
+
+}  // namespace mcp2515
+}  // namespace roio
+
+#endif
