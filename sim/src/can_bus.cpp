@@ -2,6 +2,7 @@
 #include <cmath>
 #include <roio/header.hpp>
 #include <roio/sim/can_bus.hpp>
+#include <stdexcept>
 #include <utility>
 
 namespace roio::sim {
@@ -19,6 +20,11 @@ SimTime BusStatistics::Latency::mean() const {
   return frames == 0 ? SimTime(0) : sum / static_cast<std::int64_t>(frames);
 }
 
+double BusStatistics::load() const {
+  return time <= SimTime(0) ? 0
+                            : static_cast<double>(busy.count()) / static_cast<double>(time.count());
+}
+
 NodeTiming timing_of(std::uint32_t bitrate_bps) {
   const SimTime bit = cycles(1, bitrate_bps);
   return {bit, bit * default_sample_percent / 100, bit / default_jumps_per_bit};
@@ -26,52 +32,66 @@ NodeTiming timing_of(std::uint32_t bitrate_bps) {
 
 CanBus::~CanBus() {
   for (const auto& domain : domains_) {
-    for (const Member& member : domain->members) {
-      member.controller->set_monitor(nullptr);
+    for (Controller* const member : domain->members) {
+      member->set_monitor(nullptr);
     }
   }
 }
 
-// --- members
-// ------------------------------------------------------------------------------------------
+// --- members -------------------------------------------------------------------------------------
 
 void CanBus::join(Controller& controller, const NodeTiming& timing) {
   leave(controller);
+  if (within_bit_) {
+    joining_.push_back({&controller, timing});
+  } else {
+    admit(controller, timing);
+  }
+}
+
+void CanBus::admit(Controller& controller, const NodeTiming& timing) {
   controller.set_monitor(this);
   for (const auto& domain : domains_) {
     if (std::chrono::abs(domain->timing.bit - timing.bit) * in_step <= timing.bit) {
-      domain->members.push_back({&controller});
+      domain->members.push_back(&controller);
       return;
     }
   }
   auto domain = std::make_unique<Domain>();
   domain->timing = timing;
-  domain->members.push_back({&controller});
+  domain->members.push_back(&controller);
   domain->bit_start = now_ - timing.bit;
   domains_.push_back(std::move(domain));
 }
 
 void CanBus::leave(Controller& controller) {
   controller.set_monitor(nullptr);
+  std::erase_if(joining_, [&](const Joining& j) { return j.controller == &controller; });
   for (const auto& domain : domains_) {
-    std::erase_if(domain->members, [&](const Member& m) { return m.controller == &controller; });
+    std::replace(domain->members.begin(), domain->members.end(), &controller,
+                 static_cast<Controller*>(nullptr));
   }
-  std::erase_if(domains_, [](const auto& domain) { return domain->members.empty(); });
+  left_within_bit_ = true;
+  if (!within_bit_) {
+    tidy();
+  }
 }
 
-CanBus::Member* CanBus::find(const Controller& controller) {
-  for (const auto& domain : domains_) {
-    for (Member& member : domain->members) {
-      if (member.controller == &controller) {
-        return &member;
-      }
+// A controller that leaves or joins within a bit must not move the others about under its feet.
+void CanBus::tidy() {
+  if (left_within_bit_) {
+    left_within_bit_ = false;
+    for (const auto& domain : domains_) {
+      std::erase(domain->members, nullptr);
     }
+    std::erase_if(domains_, [](const auto& domain) { return domain->members.empty(); });
   }
-  return nullptr;
+  for (const Joining& joining : std::exchange(joining_, {})) {
+    admit(*joining.controller, joining.timing);
+  }
 }
 
-// --- time
-// ---------------------------------------------------------------------------------------------
+// --- time ----------------------------------------------------------------------------------------
 
 bool CanBus::later(const Action& a, const Action& b) {
   return a.time != b.time ? a.time > b.time : a.order > b.order;
@@ -104,46 +124,62 @@ CanBus::Domain* CanBus::next_domain() const {
 bool CanBus::quiet() const {
   return !held_ && std::all_of(domains_.begin(), domains_.end(), [](const auto& domain) {
     return std::all_of(domain->members.begin(), domain->members.end(),
-                       [](const Member& member) { return member.controller->quiet(); });
+                       [](const Controller* member) { return member->quiet(); });
   });
 }
 
-// Nobody keeps time on an idle bus: whoever starts next, starts a bit right then.
+// Nobody keeps time on an idle bus: whoever starts next, starts a bit right then, but for the bit
+// that is not over yet.
 void CanBus::skip_to(SimTime time) {
   now_ = time;
   for (const auto& domain : domains_) {
-    domain->bit_start = time - domain->timing.bit;
-    domain->sampling = false;
-    domain->driven = recessive;
+    if (domain->next() < time) {
+      domain->bit_start = std::max(domain->bit_start, time - domain->timing.bit);
+      domain->sampling = false;
+      domain->driven = recessive;
+    }
   }
 }
 
 void CanBus::run_until(SimTime time) {
+  if (within_bit_) {
+    throw std::logic_error("the bus runs already: a controller's client must not run it");
+  }
   for (;;) {
     run_actions();
-    const SimTime limit = actions_.empty() ? time : std::min(time, actions_.front().time);
+    const SimTime limit =
+        std::max(now_, actions_.empty() ? time : std::min(time, actions_.front().time));
     Domain* const domain = next_domain();
-    if (domain != nullptr && !domain->sampling && quiet()) {
-      skip_to(std::max(now_, limit));
-    } else if (domain != nullptr && domain->next() <= limit) {
+    const bool idle = domain == nullptr || (!domain->sampling && quiet());
+    if (!idle && domain->next() < limit) {
       now_ = std::max(now_, domain->next());
-      if (domain->sampling) {
-        sample(*domain);
-      } else {
-        begin_bit(*domain);
-      }
+      step(*domain);
       continue;
-    } else {
-      now_ = std::max(now_, limit);
     }
+    if (idle) {
+      skip_to(limit);
+    }
+    now_ = limit;
     if (actions_.empty() || actions_.front().time > now_) {
       return;
     }
   }
 }
 
-// --- one bit
-// ------------------------------------------------------------------------------------------
+// --- one bit -------------------------------------------------------------------------------------
+
+void CanBus::step(Domain& domain) {
+  within_bit_ = true;
+  if (domain.sampling) {
+    sample(domain);
+  } else {
+    begin_bit(domain);
+  }
+  within_bit_ = false;
+  if (left_within_bit_ || !joining_.empty()) {
+    tidy();
+  }
+}
 
 std::uint8_t CanBus::wire() const {
   std::uint8_t level = held_ ? dominant : recessive;
@@ -158,9 +194,10 @@ void CanBus::begin_bit(Domain& domain) {
   domain.bit_start += domain.timing.bit;
   domain.sampling = true;
   std::uint8_t driven = recessive;
-  for (const Member& member : domain.members) {
-    const std::uint8_t level = member.controller->begin_bit();
-    driven &= member.cut ? recessive : level;
+  for (Controller* const member : domain.members) {
+    if (member != nullptr) {
+      driven &= member->begin_bit();
+    }
   }
   domain.driven = driven;
   if (domains_.size() > 1 && before == recessive && wire() == dominant) {
@@ -172,11 +209,12 @@ void CanBus::begin_bit(Domain& domain) {
 // width (CAN 2.0B, 9.1). A node that drives the wire itself follows nobody.
 void CanBus::falling_edge(const Domain& source) {
   for (const auto& domain : domains_) {
-    if (domain.get() == &source || domain->driven == dominant) {
+    const bool begins_now = !domain->sampling && domain->next() == now_;
+    if (domain.get() == &source || domain->driven == dominant || begins_now) {
       continue;
     }
     const bool busy = std::any_of(domain->members.begin(), domain->members.end(),
-                                  [](const Member& m) { return m.controller->busy(); });
+                                  [](const Controller* m) { return m != nullptr && m->busy(); });
     const NodeTiming& timing = domain->timing;
     if (!busy) {
       domain->bit_start = now_;
@@ -192,22 +230,31 @@ void CanBus::falling_edge(const Domain& source) {
 void CanBus::sample(Domain& domain) {
   domain.sampling = false;
   const std::uint8_t level = wire();
+  count_busy(domain);
   if (flip_next_ || fault_probability_ > 0) {
-    sample_with_fault(domain, level);
-  } else {
-    for (const Member& member : domain.members) {
-      member.controller->sample(level);
-    }
+    return sample_with_fault(domain, level);
   }
-  const bool busy = std::any_of(domain.members.begin(), domain.members.end(),
-                                [](const Member& m) { return m.controller->busy(); });
-  if (busy && &domain == domains_.front().get()) {
-    statistics_.busy += domain.timing.bit;
+  for (Controller* const member : domain.members) {
+    if (member != nullptr) {
+      member->sample(level);
+    }
   }
 }
 
-// --- faults
-// -------------------------------------------------------------------------------------------
+// Time in which nodes of several rates are busy counts once. Listeners are busy with others' frames
+// or with what they take for one.
+void CanBus::count_busy(const Domain& domain) {
+  const bool busy = std::any_of(
+      domain.members.begin(), domain.members.end(),
+      [](const Controller* m) { return m->busy() && m->mode() == Controller::Mode::normal; });
+  const SimTime end = domain.bit_start + domain.timing.bit;
+  if (busy && end > busy_until_) {
+    statistics_.busy += end - std::max(domain.bit_start, busy_until_);
+    busy_until_ = end;
+  }
+}
+
+// --- faults --------------------------------------------------------------------------------------
 
 void CanBus::set_bit_errors(double probability, std::uint32_t seed) {
   fault_probability_ = probability;
@@ -230,36 +277,40 @@ void CanBus::flip_next_bit(Controller* victim) {
   flip_victim_ = victim;
 }
 
-void CanBus::cut_transmitter(Controller& controller, bool cut) {
-  if (Member* const member = find(controller)) {
-    member->cut = cut;
+// The victim of the fault that is due now in this domain: none, one controller, or all (null).
+std::optional<Controller*> CanBus::draw_victim(const Domain& domain) {
+  const auto& members = domain.members;
+  if (flip_next_ && (flip_victim_ == nullptr ||
+                     std::find(members.begin(), members.end(), flip_victim_) != members.end())) {
+    flip_next_ = false;
+    return std::exchange(flip_victim_, nullptr);
   }
+  if (fault_probability_ <= 0 || samples_to_fault_-- > 0) {
+    return std::nullopt;
+  }
+  draw_next_fault();
+  const auto choice = static_cast<std::size_t>(generator_()) % (2 * members.size());
+  return choice < members.size() ? members[choice] : nullptr;
 }
 
 void CanBus::sample_with_fault(Domain& domain, std::uint8_t level) {
-  bool flip = std::exchange(flip_next_, false);
-  Controller* victim = std::exchange(flip_victim_, nullptr);
-  if (!flip && fault_probability_ > 0) {
-    flip = samples_to_fault_ == 0;
-    if (flip) {
-      const auto choice = static_cast<std::size_t>(generator_()) % (2 * domain.members.size());
-      victim = choice < domain.members.size() ? domain.members[choice].controller : nullptr;
-      draw_next_fault();
-    } else {
-      --samples_to_fault_;
+  const std::optional<Controller*> victim = draw_victim(domain);
+  statistics_.flipped_bits += victim ? 1U : 0U;
+  for (Controller* const member : domain.members) {
+    const bool hit = victim && (*victim == nullptr || *victim == member);
+    if (member != nullptr) {
+      member->sample(hit ? level ^ 1U : level);
     }
-  }
-  if (flip) {
-    ++statistics_.flipped_bits;
-  }
-  for (const Member& member : domain.members) {
-    const bool hit = flip && (victim == nullptr || victim == member.controller);
-    member.controller->sample(hit ? level ^ 1U : level);
   }
 }
 
-// --- what happens
-// ---------------------------------------------------------------------------------------
+// --- what happens --------------------------------------------------------------------------------
+
+BusStatistics CanBus::statistics() const {
+  BusStatistics result = statistics_;
+  result.time = now_;
+  return result;
+}
 
 void CanBus::on_frame(std::function<void(const Frame&, const Controller&)> observer) {
   observers_.push_back(std::move(observer));

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <iterator>
 #include <roio/sim/controller.hpp>
 
 #include "frame_parser.hpp"
@@ -25,6 +26,11 @@ constexpr std::uint8_t acknowledge_slot_at = 1;
 constexpr std::uint8_t acknowledge_delimiter_at = 2;
 constexpr std::uint8_t received_at = 8;  // the last bit but one
 constexpr std::uint8_t end_at = 9;       // the seventh bit of end-of-frame
+
+bool is_same(const Frame& a, const Frame& b) {
+  return a.id == b.id && a.kind == b.kind && a.length == b.length &&
+         std::equal(std::begin(a.data), std::end(a.data), std::begin(b.data));
+}
 
 }  // namespace
 
@@ -85,11 +91,11 @@ Confinement Controller::confinement() const {
   return confinement_;
 }
 
-// --- one bit
-// ----------------------------------------------------------------------------------------
+// --- one bit -------------------------------------------------------------------------------------
 
-void Controller::sample(std::uint8_t level) {
+void Controller::sample_outside_frame(std::uint8_t level) {
   switch (state_) {
+    case State::frame:  // is sample_frame()'s
     case State::off:
       return;
     case State::asleep:
@@ -113,8 +119,6 @@ void Controller::sample(std::uint8_t level) {
         start_frame(level);
       }
       return;
-    case State::frame:
-      return sample_frame(level);
     case State::tail:
       return sample_tail(level);
     case State::error_flag:
@@ -129,8 +133,7 @@ void Controller::sample(std::uint8_t level) {
   }
 }
 
-// --- a frame, up to the CRC
-// ---------------------------------------------------------------------------
+// --- a frame, up to the CRC ----------------------------------------------------------------------
 
 void Controller::try_to_start() {
   if (mode_ != Mode::normal) {
@@ -141,8 +144,11 @@ void Controller::try_to_start() {
     requested_ = false;
     return;
   }
+  // Most attempts are repeated ones: arbitration was lost.
+  if (parts_->sending.size == 0 || !is_same(submission_.frame, next->frame)) {
+    parts_->sending = wire_bits_of(next->frame);
+  }
   submission_ = *next;
-  parts_->sending = wire_bits_of(next->frame);
   parts_->sent = 0;
   parts_->parser.start();
   transmitting_ = true;
@@ -186,7 +192,7 @@ bool Controller::sample_own_bit(std::uint8_t level) {
   if (parts_->parser.expects_stuff_bit()) {
     // A recessive stuff bit overwritten during arbitration: no error to count (CAN 2.0B, 8, rule 3,
     // exception 2).
-    fail(BusError::stuff, false);
+    fail(BusError::stuff, 0);
     return false;
   }
   lose_arbitration();
@@ -212,8 +218,7 @@ void Controller::end_of_crc() {
   enter(State::tail, recessive);
 }
 
-// --- its tail
-// -------------------------------------------------------------------------------------------
+// --- its tail ------------------------------------------------------------------------------------
 
 void Controller::sample_tail(std::uint8_t level) {
   const std::uint8_t at = count_++;
@@ -233,7 +238,9 @@ void Controller::sample_tail(std::uint8_t level) {
       if (output_ == dominant && level == recessive) {
         return fail(BusError::bit);
       }
-      output_ = recessive;
+      if (output_ == dominant) {
+        acknowledged();
+      }
       return;
     case acknowledge_delimiter_at:
       if (level == dominant) {
@@ -258,9 +265,8 @@ void Controller::sample_end_of_frame(std::uint8_t level) {
     return fail(transmitting_ ? BusError::bit : BusError::form);
   }
   if (at == received_at && !transmitting_) {
-    received();
-  }
-  if (at == end_at) {
+    client_.on_received(parts_->parser.frame());
+  } else if (at == end_at) {
     enter(State::intermission, recessive);
     if (transmitting_) {
       transmitted();  // last: the owner may switch the mode
@@ -280,20 +286,25 @@ void Controller::transmitted() {
   client_.on_transmitted();
 }
 
-void Controller::received() {
-  if (mode_ == Mode::normal && receive_errors_ > 0) {
+// Received without error up to the acknowledge slot, and acknowledged: that is what the counter
+// goes by (rule 8), although the frame is not whole yet.
+void Controller::acknowledged() {
+  output_ = recessive;
+  if (receive_errors_ > 0) {
     receive_errors_ =
         receive_errors_ < passive_limit ? receive_errors_ - 1 : receive_errors_after_success;
     confine();
   }
-  client_.on_received(parts_->parser.frame());
 }
 
-// --- errors
-// ---------------------------------------------------------------------------------------------
+// --- errors --------------------------------------------------------------------------------------
 
-void Controller::fail(BusError error, bool counts) {
-  const bool own = was_transmitter_;
+// Rules 1 and 3.
+void Controller::fail(BusError error) {
+  fail(error, was_transmitter_ ? 8 : 1);
+}
+
+void Controller::fail(BusError error, unsigned amount) {
   const bool in_own_frame = transmitting_;
   transmitting_ = false;
   if (mode_ == Mode::listen_only) {
@@ -303,10 +314,11 @@ void Controller::fail(BusError error, bool counts) {
   passive_flag_ = confinement_ == Confinement::passive;
   // A lone node stays error-passive: nobody is there to acknowledge (rule 3, exception 1).
   owed_acknowledge_error_ = passive_flag_ && in_own_frame && error == BusError::acknowledge;
+  after_error_flag_ = true;
   enter(State::error_flag, passive_flag_ ? recessive : dominant);
   equal_level_ = recessive;
-  if (counts && !owed_acknowledge_error_) {
-    count_error(own ? 8 : 1);
+  if (amount > 0 && !owed_acknowledge_error_) {
+    count_error(amount);
   }
   if (in_own_frame) {
     if (monitor_ != nullptr) {
@@ -323,25 +335,24 @@ void Controller::overload() {
     return enter(State::integrating, recessive);
   }
   passive_flag_ = false;
+  after_error_flag_ = false;
   owed_acknowledge_error_ = false;
   enter(State::overload_flag, dominant);
 }
 
 void Controller::sample_flag(std::uint8_t level) {
   if (!passive_flag_) {
-    // A flag that does not show on the wire is an error in itself (rules 4 and 5); it goes on.
     if (level == recessive) {
-      count_error(8);
-      if (state_ == State::bus_off) {
-        return;
-      }
+      // A flag that does not show on the wire is an error in itself, and begins anew (rules 4 and
+      // 5; ISO 16845-1, 8.6.1).
+      return fail(BusError::bit, 8);
     }
     ++count_;
   } else {
     if (level == dominant && owed_acknowledge_error_) {
       owed_acknowledge_error_ = false;
       count_error(8);
-      if (state_ == State::bus_off) {
+      if (state_ != State::error_flag) {
         return;
       }
     }
@@ -363,11 +374,12 @@ void Controller::sample_flag_end(std::uint8_t level) {
   ++count_;
   // A receiver that sees a dominant bit right after its flag was the first to find the error (rule
   // 2). Who holds the bus down any longer is the more wrong, eight bits at a time (rule 6).
-  if (count_ == 1 && !was_transmitter_) {
+  if (count_ == 1 && after_error_flag_ && !was_transmitter_) {
     count_error(8);
-  } else if (count_ % 8 == 0) {
+  } else if (count_ == 8) {
+    count_ = 0;
+    after_error_flag_ = false;
     count_error(8);
-    count_ = 8;
   }
 }
 
@@ -404,18 +416,22 @@ void Controller::confine() {
   client_.on_confinement_changed();
 }
 
-// --- between frames
-// ---------------------------------------------------------------------------------------
+// --- between frames ------------------------------------------------------------------------------
 
 void Controller::sample_intermission(std::uint8_t level) {
   ++count_;
-  if (level == dominant) {
-    // The third bit counts as somebody's start of frame.
-    return count_ == intermission_bits ? start_frame(level) : overload();
+  const bool suspends = was_transmitter_ && confinement_ == Confinement::passive;
+  if (count_ < intermission_bits) {
+    return level == dominant ? overload() : void();
   }
-  if (count_ == intermission_bits) {
-    const bool suspends = was_transmitter_ && confinement_ == Confinement::passive;
-    enter(suspends ? State::suspended : State::idle, recessive);
+  enter(suspends ? State::suspended : State::idle, recessive);
+  if (level == dominant) {
+    // Somebody's start of frame, one bit early. Who has something to send takes it for its own and
+    // goes on with the identifier (CAN 2.0B, 3.2.5 "Interframe spacing").
+    if (state_ == State::idle && requested_) {
+      try_to_start();
+    }
+    sample(level);
   }
 }
 

@@ -18,7 +18,23 @@ class FrameParser {
   };
 
   void start();
-  Step put(std::uint8_t bit);
+  // Inline, for it is what a simulation spends its time in.
+  Step put(std::uint8_t bit) {
+    const bool stuff_bit = expects_stuff_bit();
+    if (bit != last_) {
+      last_ = bit;
+      run_ = 1;
+    } else if (stuff_bit) {
+      return Step::stuff_error;
+    } else {
+      ++run_;
+    }
+    if (!stuff_bit) {
+      take(bit);
+    }
+    // Five equal bits at the very end of the CRC are followed by a stuff bit, too.
+    return position_ == end_ && !expects_stuff_bit() ? Step::complete : Step::more;
+  }
 
   /// Whether the next bit is a stuff bit.
   [[nodiscard]] bool expects_stuff_bit() const { return run_ == 5; }
@@ -29,12 +45,25 @@ class FrameParser {
   [[nodiscard]] Frame frame() const;
 
  private:
-  void take(std::uint8_t bit);
-  void note_layout();
-  [[nodiscard]] std::uint32_t field(std::uint8_t first, std::uint8_t width) const;
+  static constexpr std::uint16_t crc_polynomial = 0x4599;  // x15+x14+x10+x8+x7+x4+x3+1
+  static constexpr std::uint8_t word_bits = 64;
 
-  std::array<std::uint8_t, 118> bits_{};  // without stuff bits
-  std::uint8_t position_ = 0;             // how many of bits_ are there
+  void take(std::uint8_t bit) {
+    words_[position_ / word_bits] |= std::uint64_t{bit} << (word_bits - 1U - position_ % word_bits);
+    const auto feedback = static_cast<std::uint16_t>(((crc_ >> 14) ^ bit) & 1U);
+    crc_ = static_cast<std::uint16_t>(((crc_ << 1) & 0x7FFF) ^ (feedback * crc_polynomial));
+    if (++position_ == layout_at_) {
+      note_layout();
+    }
+  }
+  void note_layout();
+  [[nodiscard]] bool extended() const;
+  [[nodiscard]] bool remote() const;
+  [[nodiscard]] std::uint32_t field(unsigned first, unsigned width) const;
+
+  std::array<std::uint64_t, 2> words_{};  // the bits without stuff bits, the first one highest
+  std::uint8_t position_ = 0;             // how many are there
+  std::uint8_t layout_at_ = 0;            // when there are this many, more is known of the layout
   std::uint8_t end_ = 0;                  // how many there will be; 0: not known yet
   std::uint8_t dlc_at_ = 0;               // where the DLC begins
   std::uint8_t run_ = 0;                  // equal bits up to now

@@ -1,5 +1,6 @@
 #include <roio/header.hpp>
 #include <roio/sim/host_node.hpp>
+#include <stdexcept>
 
 namespace roio::sim {
 
@@ -14,6 +15,11 @@ HostNode::~HostNode() {
 }
 
 void HostNode::send(const Frame& frame) {
+  constexpr std::uint8_t largest_dlc = 15;
+  if (frame.kind == FrameKind::error || frame.id > max_id(frame.kind) ||
+      frame.length > largest_dlc) {
+    throw std::invalid_argument("no frame that a bus can carry");
+  }
   const bool urgent = is_extended(frame.kind) && unpack_id(frame.id).priority == Priority::urgent;
   (urgent ? urgent_ : normal_).push_back({frame, bus_.now()});
   controller_.request();

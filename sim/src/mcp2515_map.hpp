@@ -157,6 +157,21 @@ constexpr Access access(std::uint8_t address) {
   return {0, false, false};
 }
 
+/// Filters, masks and buffers, which the datasheet resets to "unknown".
+constexpr bool has_no_reset_value(std::uint8_t address) {
+  const bool in_buffer = address >= transmit_control(0) && (address & 0x0F) != 0;
+  return is_filter_or_mask(address) || (in_buffer && !is_canstat(address) && !is_canctrl(address));
+}
+
+/// The bits that a register without reset value has at all; the others read as 0.
+constexpr std::uint8_t existing(std::uint8_t address) {
+  if (address < receive_control(0)) {
+    return access(address).writable;
+  }
+  const std::uint8_t column = address & 0x0F;
+  return column == sidl ? 0xFB : column == dlc ? 0x7F : 0xFF;
+}
+
 }  // namespace roio::sim::map
 
 #endif

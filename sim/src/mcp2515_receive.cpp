@@ -70,8 +70,16 @@ int Mcp2515Chip::matching_filter(const Frame& frame, int buffer) const {
   return no_filter;
 }
 
-// Figure 4-2: RXB0 has the first look; what it accepts and cannot hold rolls over, when it may.
+// All eight data bytes of the message assembly buffer move into a receive buffer (4.1): those that
+// a frame does not fill are left over from a frame before, accepted or not.
+void Mcp2515Chip::assemble(const Frame& frame) {
+  const int bytes = is_remote(frame.kind) ? 0 : std::min<int>(frame.length, max_data_length);
+  std::copy_n(frame.data, bytes, assembled_.begin());
+}
+
+// Figure 4-3: RXB0 has the first look; what it accepts and cannot hold rolls over, when it may.
 void Mcp2515Chip::on_received(const Frame& frame) {
+  assemble(frame);
   const bool full0 = (registers_[map::canintf] & map::rxif(0)) != 0;
   const bool full1 = (registers_[map::canintf] & map::rxif(1)) != 0;
   const bool rolls_over = (registers_.at(map::receive_control(0)) & map::bukt) != 0;
@@ -94,7 +102,6 @@ void Mcp2515Chip::on_received(const Frame& frame) {
   } else {
     overflow(map::rx1ovr);
   }
-  update_mode();
 }
 
 void Mcp2515Chip::overflow(std::uint8_t flag) {
@@ -118,11 +125,7 @@ void Mcp2515Chip::store(const Frame& frame, int buffer, int filter) {
   registers_.at(base + 4U) = static_cast<std::uint8_t>(id);
   registers_.at(base + map::dlc) =
       static_cast<std::uint8_t>(frame.length | (extended && remote ? map::rtr : 0U));
-  // What the frame does not fill stays as it was.
-  const int bytes = remote ? 0 : std::min<int>(frame.length, max_data_length);
-  for (int i = 0; i < bytes; ++i) {
-    registers_.at(static_cast<std::size_t>(base + map::data + i)) = frame.data[i];
-  }
+  std::copy(assembled_.begin(), assembled_.end(), registers_.begin() + base + map::data);
   const std::uint8_t filter_bits = buffer == 0 ? 1 : 7;
   registers_.at(base) =
       static_cast<std::uint8_t>((registers_.at(base) & ~(filter_bits | map::rxrtr)) |

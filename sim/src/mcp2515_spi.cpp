@@ -65,8 +65,8 @@ std::uint8_t Mcp2515Chip::exchange(std::uint8_t in) {
   if (!selected_) {
     return 0xFF;  // nobody drives the line
   }
-  if (!running_ && mode_ != OperationMode::sleep) {
-    violation("SPI before the oscillator runs");
+  if (!running_) {
+    violation("SPI before the oscillator has started up");
     return 0;
   }
   const bool first = instruction_.bytes == 0;

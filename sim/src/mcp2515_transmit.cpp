@@ -1,6 +1,7 @@
 // Transmission of the simulated MCP2515 (3).
 #include <roio/frame_length.hpp>
 #include <roio/sim/mcp2515_chip.hpp>
+#include <utility>
 
 #include "mcp2515_map.hpp"
 
@@ -17,7 +18,8 @@ void Mcp2515Chip::request_transmission(int buffer) {
     return give_up(buffer, map::abtf);
   }
   if (mode_ == OperationMode::loopback) {
-    start_loopback();
+    // Not before all the buffers that one instruction names are pending.
+    later(SimTime(0), [this] { start_loopback(); });
   } else {
     controller_.request();
   }
@@ -91,26 +93,24 @@ std::optional<Submission> Mcp2515Chip::next_submission() {
   return Submission{transmit_frame(on_wire_), requested_at_.at(static_cast<std::size_t>(on_wire_))};
 }
 
-void Mcp2515Chip::transmission_done(int buffer) {
+void Mcp2515Chip::transmission_done(const Frame& frame) {
+  const int buffer = std::exchange(on_wire_, -1);
   registers_.at(map::transmit_control(buffer)) &= static_cast<std::uint8_t>(~map::txreq);
   ++events_.sent;
   set_flag(map::txif(buffer));
+  if (sent_listener_) {
+    sent_listener_(frame);
+  }
 }
 
 void Mcp2515Chip::on_transmitted() {
-  const int buffer = on_wire_;
-  on_wire_ = -1;
-  transmission_done(buffer);
-  if (sent_listener_) {
-    sent_listener_(controller_.submission().frame);
-  }
+  transmission_done(controller_.submission().frame);
   update_mode();
 }
 
-/// An attempt came to nothing: the chip tries again, unless told otherwise.
+// An attempt came to nothing: the chip tries again, unless told otherwise.
 void Mcp2515Chip::end_attempt(std::uint8_t error_flag) {
-  const int buffer = on_wire_;
-  on_wire_ = -1;
+  const int buffer = std::exchange(on_wire_, -1);
   registers_.at(map::transmit_control(buffer)) |= error_flag;
   const bool all_taken_back = (registers_[map::canctrl] & (map::abat | map::osm)) != 0;
   if (!is_pending(buffer)) {
@@ -122,6 +122,7 @@ void Mcp2515Chip::end_attempt(std::uint8_t error_flag) {
 
 void Mcp2515Chip::on_arbitration_lost() {
   end_attempt(map::mloa);
+  update_mode();
 }
 
 void Mcp2515Chip::on_transmit_error(BusError /*error*/) {
@@ -130,34 +131,24 @@ void Mcp2515Chip::on_transmit_error(BusError /*error*/) {
   update_mode();
 }
 
-// --- loopback mode: a bus of its own, that takes as long (10.4)
-// ---------------------------------------------
+// --- loopback mode: a bus of its own, that takes as long (10.4) ----------------------------------
 
 void Mcp2515Chip::start_loopback() {
-  const int buffer = next_buffer();
-  if (loopback_under_way_ || buffer < 0) {
+  if (mode_ != OperationMode::loopback || on_wire_ >= 0) {
     return;
   }
-  loopback_under_way_ = true;
-  on_wire_ = buffer;
-  const SimTime duration = timing().bit * wire_bits(transmit_frame(buffer));
-  bus_.after(duration, [this, era = era_] { finish_loopback(era); });
+  on_wire_ = next_buffer();
+  if (on_wire_ >= 0) {
+    const Frame frame = transmit_frame(on_wire_);
+    later(timing().bit * wire_bits(frame), [this, frame] { finish_loopback(frame); });
+  }
 }
 
-void Mcp2515Chip::finish_loopback(std::uint64_t era) {
-  if (era != era_) {
-    return;
-  }
-  const int buffer = on_wire_;
-  const Frame frame = transmit_frame(buffer);
-  loopback_under_way_ = false;
-  on_wire_ = -1;
-  transmission_done(buffer);
+void Mcp2515Chip::finish_loopback(const Frame& frame) {
+  transmission_done(frame);
   on_received(frame);
   update_mode();
-  if (mode_ == OperationMode::loopback) {
-    start_loopback();
-  }
+  start_loopback();
 }
 
 }  // namespace roio::sim

@@ -1,4 +1,5 @@
 #include <roio/sim/spi_wire.hpp>
+#include <utility>
 
 namespace roio::sim {
 
@@ -20,10 +21,24 @@ void SpiWire::deselect() {
 }
 
 void SpiWire::set_fault(Fault fault) {
+  const bool was_connected = fault_ == Fault::none;
   fault_ = fault;
   if (fault != Fault::none) {
     chip_.deselect();
+  } else if (selected_ && !was_connected) {
+    chip_.select();  // plugged in while the line is low: what follows looks like an instruction
   }
+}
+
+bool SpiWire::interrupt_line_is_low() {
+  return std::exchange(spike_, false) || (fault_ == Fault::none && !chip_.interrupt_pin());
+}
+
+void SpiWire::clear_faults() {
+  set_fault(Fault::none);
+  set_bit_flips(0, 0);
+  lose_select_in_ = 0;
+  spike_ = false;
 }
 
 void SpiWire::set_bit_flips(double probability, std::uint32_t seed) {

@@ -16,7 +16,8 @@ class Writer {
     }
   }
 
-  void end_arbitration() { out_.arbitration_end = static_cast<std::uint8_t>(out_.size - 1U); }
+  /// The next bit is the last of the arbitration field.
+  void end_arbitration() { out_.arbitration_end = out_.size; }
 
  private:
   void append(std::uint8_t bit) {
@@ -44,13 +45,13 @@ void put_head(Writer& writer, const Frame& frame) {
     writer.put(frame.id >> 18, 12);  // start of frame and identifier 28..18
     writer.put(0b11, 2);             // SRR, IDE
     writer.put(frame.id & 0x3FFFFU, 18);
-    writer.put(remote, 1);
     writer.end_arbitration();
+    writer.put(remote, 1);
     writer.put(0, 2);  // r1, r0
   } else {
     writer.put(frame.id, 12);
-    writer.put(remote, 1);
     writer.end_arbitration();
+    writer.put(remote, 1);
     writer.put(0, 2);  // IDE, r0
   }
   writer.put(frame.length, 4);

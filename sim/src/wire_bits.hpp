@@ -14,7 +14,7 @@ struct WireBits {
 
   std::array<std::uint8_t, max_size> bits{};  ///< 0 dominant, 1 recessive.
   std::uint8_t size = 0;
-  /// Index of the last bit of the arbitration field, which is the last one that may be lost.
+  /// Index of the RTR bit, the last one in which arbitration may be lost.
   std::uint8_t arbitration_end = 0;
 };
 

@@ -81,9 +81,9 @@ TEST(SpiBudget, BothBuffersFull) {
   rig.mark();
   Frame frame{};
   ASSERT_EQ(rig.can.receive(frame), Status::ok);
-  EXPECT_EQ(rig.spent(), Cost(16, 2)) << "no look between the two";
+  EXPECT_EQ(rig.spent(), Cost(18, 3));
   ASSERT_EQ(rig.can.receive(frame), Status::ok);
-  EXPECT_EQ(rig.spent(), Cost(16 + 16 + 6, 5)) << "and one at the chip's overflow flags";
+  EXPECT_EQ(rig.spent(), Cost(18 + 16 + 6, 3 + 2 + 1)) << "and a look at the overflow flags";
 }
 
 TEST(SpiBudget, NothingThere) {

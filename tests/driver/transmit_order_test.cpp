@@ -182,8 +182,7 @@ TEST(TransmitOrder, ABusyBusIsFilledButForOneGapInSix) {
   EXPECT_GT(busy, (rig.bus.now() - start) * 95 / 100);
 }
 
-// --- against everything that can come between
-// ----------------------------------------------------------------
+// --- against everything that can come between ----------------------------------------------------
 
 struct Trouble {
   const char* name;
@@ -338,7 +337,7 @@ TEST_P(TransmitTrouble, EachFrameIsSentOnceAndReportedTruly) {
   }
   settle();
   expect_truth();
-  EXPECT_GT(sent_.size(), 1'000U);
+  EXPECT_GT(sent_.size(), 200U);
   if (GetParam().bus_off) {
     EXPECT_GT(rig_.chip.events().bus_offs, 0U);
     EXPECT_GT(rig_.can.counters().bus_offs, 0U);
@@ -371,8 +370,7 @@ INSTANTIATE_TEST_SUITE_P(
                 .bus_off = true}),
     [](const auto& row) { return std::string(row.param.name); });
 
-// --- abort
-// ------------------------------------------------------------------------------------------------------
+// --- abort ---------------------------------------------------------------------------------------
 
 TEST(Abort, TakesBackWhatHasNotBegun) {
   SendingRig rig;

@@ -1,28 +1,649 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <memory>
 #include <roio/frame_length.hpp>
 #include <roio/sim/can_bus.hpp>
-#include <roio/sim/host_node.hpp>
+#include <stdexcept>
+#include <string>
 #include <vector>
+
+#include "station.hpp"
+#include "vectors.hpp"
 
 namespace roio::sim {
 namespace {
 
-TEST(CanBus, AFrameTakesItsBits) {
+using std::chrono::milliseconds;
+using test::Station;
+using test::text_of;
+using Texts = std::vector<std::string>;
+
+constexpr std::uint32_t rate = 500'000;
+const SimTime bit = cycles(1, rate);
+const Frame document_frame{0x1000400A, FrameKind::extended, 3, {0x5A, 0x2D, 0x00}};
+
+Frame extended(std::uint32_t id, std::uint8_t data = 0) {
+  return {id, FrameKind::extended, 1, {data}};
+}
+
+/// One frame after the other from one station, as many as there is time for.
+void send_without_end(Station& station, const Frame& frame) {
+  station.node.on_sent([&station, frame](const Frame&) { station.node.send(frame); });
+  station.node.send(frame);
+}
+
+// --- time ----------------------------------------------------------------------------------------
+
+TEST(CanBus, AFrameIsThereWithItsLastBitAndItsSenderKnows) {
   CanBus bus;
-  HostNode sender(bus, 500'000);
-  HostNode receiver(bus, 500'000);
-  const Frame frame{0x1000400A, FrameKind::extended, 3, {0x5A, 0x2D, 0x00}};
-  bus.run_for(std::chrono::milliseconds(1));
-  SimTime end{0};
-  bus.on_frame([&](const Frame&, const Controller&) { end = bus.now(); });
+  Station sender(bus);
+  Station receiver(bus);
+  bus.run_for(milliseconds(1));
+  SimTime received{0};
+  SimTime sent{0};
+  receiver.node.on_receive([&](const Frame&) { received = bus.now(); });
+  sender.node.on_sent([&](const Frame&) { sent = bus.now(); });
   const SimTime start = bus.now();
-  sender.send(frame);
-  bus.run_for(std::chrono::milliseconds(1));
-  // The document's worked frame: 97 bits, of which the last three are intermission.
-  const SimTime bit = cycles(1, 500'000);
-  EXPECT_GT(end - start, bit * (97 - 3 - 1));
-  EXPECT_LE(end - start, bit * (97 - 3 + 1));
+  sender.node.send(document_frame);
+  bus.run_for(milliseconds(1));
+  // 97 bits, the last three of which are intermission; sampled at 80 %.
+  EXPECT_EQ(sent - start, bit * 93 + bit * 4 / 5);
+  EXPECT_EQ(received - start, sent - start - bit) << "one bit earlier";
+}
+
+TEST(CanBus, FramesBackToBackTakeExactlyTheirBits) {
+  for (const test::Vector& vector : test::read_vectors(ROIO_PROTOCOL_DOCUMENT)) {
+    Frame frame{vector.id, FrameKind::extended, vector.message.length, {}};
+    std::copy_n(vector.message.data, frame.length, frame.data);
+    CanBus bus;
+    Station sender(bus);
+    Station receiver(bus);
+    bus.run_for(milliseconds(1));
+    send_without_end(sender, frame);
+    const std::uint64_t frames = 1000;
+    // To the end of the intermission after the last of them, and no more.
+    bus.run_for(bit * vector.bits * frames);
+    EXPECT_EQ(bus.statistics().frames, frames) << vector;
+    EXPECT_EQ(receiver.received.size(), frames) << vector;
+    EXPECT_FALSE(sender.node.controller().busy()) << vector;
+    bus.run_for(bit);
+    EXPECT_TRUE(sender.node.controller().busy()) << vector;
+  }
+}
+
+TEST(CanBus, AnIdleBusStartsABitWhenAFrameComes) {
+  CanBus bus;
+  Station sender(bus);
+  Station receiver(bus);
+  bus.run_for(milliseconds(1) + SimTime(1'234'567));  // no whole number of bits
+  const SimTime start = bus.now();
+  SimTime sent{0};
+  sender.node.on_sent([&](const Frame&) { sent = bus.now(); });
+  sender.node.send(document_frame);
+  bus.run_for(milliseconds(1));
+  EXPECT_EQ(sent - start, bit * 93 + bit * 4 / 5);
+}
+
+TEST(CanBus, TheIntermissionIsNotCutShort) {
+  CanBus bus;
+  Station sender(bus);
+  Station receiver(bus);
+  bus.run_for(milliseconds(1));
+  std::vector<SimTime> sent;
+  sender.node.on_sent([&](const Frame&) { sent.push_back(bus.now()); });
+  sender.node.send(document_frame);
+  // The last bit of the intermission is sampled already, but not over.
+  bus.after(bit * 97 - bit / 10, [&] { sender.node.send(document_frame); });
+  bus.run_for(milliseconds(1));
+  ASSERT_EQ(sent.size(), 2U);
+  EXPECT_EQ(sent[1] - sent[0], bit * 97);
+}
+
+TEST(CanBus, TimePassesThoughNobodyIsThere) {
+  CanBus bus;
+  bus.run_until(SimTime(1000));
+  EXPECT_EQ(bus.now(), SimTime(1000));
+  bus.run_until(SimTime(10));
+  EXPECT_EQ(bus.now(), SimTime(1000)) << "never back";
+}
+
+TEST(CanBus, ActionsComeAtTheirTimeInTheOrderAskedFor) {
+  CanBus bus;
+  Station a(bus);
+  Station b(bus);
+  send_without_end(a, document_frame);
+  std::vector<std::string> order;
+  const auto note = [&](const std::string& what) {
+    order.push_back(what + " " + std::to_string(bus.now().count()));
+  };
+  bus.at(SimTime(200), [&] { note("third"); });
+  bus.at(SimTime(100), [&] { note("first"); });
+  bus.at(SimTime(200), [&] { note("fourth"); });
+  bus.at(SimTime(100), [&] {
+    note("second");
+    bus.at(SimTime(5), [&] { note("gone by"); });
+    bus.after(SimTime(300), [&] { note("fifth"); });
+  });
+  bus.at(SimTime(1001), [&] { note("never"); });
+  bus.run_until(SimTime(1000));
+  EXPECT_EQ(order, (Texts{"first 100", "second 100", "gone by 100", "third 200", "fourth 200",
+                          "fifth 400"}));
+  EXPECT_EQ(bus.now(), SimTime(1000));
+}
+
+TEST(CanBus, AnActionAtTheEndOfARunIsInIt) {
+  CanBus bus;
+  int calls = 0;
+  bus.at(SimTime(1000), [&] { ++calls; });
+  bus.run_until(SimTime(999));
+  EXPECT_EQ(calls, 0);
+  bus.run_until(SimTime(1000));
+  EXPECT_EQ(calls, 1);
+}
+
+TEST(CanBus, AnActionComesBeforeTheBitThatBeginsThen) {
+  CanBus bus;
+  Station a(bus);
+  Station b(bus);
+  bus.run_for(milliseconds(1));
+  a.node.send(extended(0x10000002));
+  const int bits = wire_bits(extended(0x10000002));
+  // Both at the very end of the intermission: they start together, and the lower identifier wins.
+  a.node.send(extended(0x10000002));
+  bus.after(bit * bits, [&] { b.node.send(extended(0x10000001)); });
+  bus.run_for(milliseconds(1));
+  EXPECT_EQ(bus.statistics().arbitrations_lost, 1U);
+  EXPECT_EQ(a.received, Texts{text_of(extended(0x10000001))});
+}
+
+TEST(CanBus, AnActionMayRunTheBus) {
+  CanBus bus;
+  Station a(bus);
+  Station b(bus);
+  std::vector<int> order;
+  bus.at(SimTime(0) + milliseconds(1), [&] {
+    a.node.send(document_frame);
+    bus.run_for(milliseconds(1));
+    order.push_back(static_cast<int>(b.received.size()));
+  });
+  bus.at(SimTime(0) + milliseconds(3), [&] { order.push_back(2); });
+  bus.run_until(milliseconds(4));
+  EXPECT_EQ(order, (std::vector<int>{1, 2}));
+  EXPECT_EQ(bus.now(), SimTime(milliseconds(4)));
+}
+
+TEST(CanBus, ACallbackOfANodeMayNotRunTheBus) {
+  CanBus bus;
+  Station a(bus);
+  Station b(bus);
+  int refused = 0;
+  b.node.on_receive([&](const Frame&) {
+    EXPECT_THROW(bus.run_for(milliseconds(1)), std::logic_error);
+    ++refused;
+  });
+  a.node.send(document_frame);
+  bus.run_for(milliseconds(1));
+  EXPECT_EQ(refused, 1);
+}
+
+// --- joining and leaving -------------------------------------------------------------------------
+
+TEST(CanBus, ANewcomerWaitsForElevenRecessiveBitsAndMissesTheFrameUnderWay) {
+  CanBus bus;
+  Station a(bus);
+  Station b(bus);
+  bus.run_for(milliseconds(1));
+  a.node.send(document_frame);
+  bus.run_for(bit * 40);
+  Station newcomer(bus);
+  newcomer.node.send(extended(0x00000001));
+  bus.run_for(milliseconds(1));
+  EXPECT_EQ(newcomer.received, Texts{});
+  EXPECT_EQ(a.received, Texts{text_of(extended(0x00000001))});
+  EXPECT_EQ(bus.statistics().transmit_errors, 0U);
+}
+
+TEST(CanBus, AStationMayLeaveInTheMiddleOfItsFrame) {
+  CanBus bus;
+  Station a(bus);
+  Station b(bus);
+  auto leaver = std::make_unique<Station>(bus);
+  bus.run_for(milliseconds(1));
+  leaver->node.send(document_frame);
+  bus.run_for(bit * 40);
+  leaver.reset();
+  bus.run_for(milliseconds(1));
+  a.node.send(document_frame);
+  bus.run_for(milliseconds(1));
+  EXPECT_EQ(b.received, Texts{text_of(document_frame)});
+}
+
+TEST(CanBus, StationsMayLeaveAndJoinInACallback) {
+  CanBus bus;
+  Station sender(bus);
+  std::unique_ptr<Station> others[3];
+  for (auto& other : others) {
+    other = std::make_unique<Station>(bus);
+  }
+  Station middle(bus);
+  Station last(bus);
+  std::unique_ptr<Station> newcomer;
+  middle.node.on_receive([&](const Frame&) {
+    for (auto& other : others) {
+      other.reset();
+    }
+    newcomer = std::make_unique<Station>(bus);
+  });
+  sender.node.send(document_frame);
+  bus.run_for(milliseconds(1));
+  ASSERT_NE(newcomer, nullptr);
+  EXPECT_EQ(last.received, Texts{text_of(document_frame)});
+  middle.node.on_receive(nullptr);
+  sender.node.send(document_frame);
+  bus.run_for(milliseconds(1));
+  EXPECT_EQ(last.received.size(), 2U);
+  EXPECT_EQ(newcomer->received, Texts{text_of(document_frame)});
+}
+
+TEST(CanBus, AControllerMayLeaveAndJoinAgainInItsOwnCallback) {
+  CanBus bus;
+  Station sender(bus);
+  Station mover(bus);
+  Station other(bus);
+  mover.node.on_receive([&](const Frame& frame) {
+    bus.leave(mover.node.controller());
+    bus.join(mover.node.controller(), timing_of(rate));
+    mover.received.push_back(text_of(frame));
+  });
+  for (int i = 0; i < 3; ++i) {
+    sender.node.send(document_frame);
+  }
+  bus.run_for(milliseconds(2));
+  EXPECT_EQ(mover.received.size(), 3U);
+  EXPECT_EQ(other.received.size(), 3U);
+  EXPECT_EQ(bus.statistics().transmit_errors, 0U);
+}
+
+// --- arbitration ---------------------------------------------------------------------------------
+
+TEST(CanBus, TheLowerArbitrationFieldWins) {
+  const Frame by_strength[] = {
+      {0x000, FrameKind::standard, 1, {1}},
+      {0x100, FrameKind::standard, 1, {1}},
+      {0x100, FrameKind::standard_remote, 1, {}},
+      {0x100 << 18, FrameKind::extended, 1, {1}},
+      {0x100 << 18, FrameKind::extended_remote, 1, {}},
+      {(0x100 << 18) | 1, FrameKind::extended, 1, {1}},
+      {(0x100 << 18) | 0x20000, FrameKind::extended, 1, {1}},
+      {0x101, FrameKind::standard, 1, {1}},
+      {0x1FFFFFFF, FrameKind::extended, 1, {1}},
+      {0x1FFFFFFF, FrameKind::extended_remote, 1, {}},
+  };
+  for (const Frame& strong : by_strength) {
+    for (const Frame* weak = &strong + 1; weak != std::end(by_strength); ++weak) {
+      CanBus bus;
+      Station a(bus);
+      Station b(bus);
+      Station listener(bus);
+      bus.run_for(milliseconds(1));
+      a.node.send(*weak);
+      b.node.send(strong);
+      const SimTime start = bus.now();
+      bus.run_for(bit * (wire_bits(strong) + wire_bits(*weak)));
+      const std::string pair = text_of(strong) + " against " + text_of(*weak);
+      EXPECT_EQ(listener.received, (Texts{text_of(strong), text_of(*weak)})) << pair;
+      EXPECT_EQ(a.received, Texts{text_of(strong)}) << pair;
+      EXPECT_EQ(bus.statistics().busy, bus.now() - start) << "the loser retries at once: " << pair;
+      EXPECT_EQ(bus.statistics().transmit_errors, 0U) << pair;
+      EXPECT_EQ(bus.statistics().arbitrations_lost, 1U) << pair;
+    }
+  }
+}
+
+TEST(CanBus, TwentyNodesContendInStrictOrder) {
+  std::mt19937 generator = test::seeded_generator();
+  for (int round = 0; round < 20; ++round) {
+    CanBus bus;
+    Station listener(bus);
+    std::vector<std::unique_ptr<Station>> stations;
+    std::vector<Frame> frames;
+    while (frames.size() < 20) {
+      const Frame frame = test::random_frame(generator);
+      const bool taken = std::any_of(frames.begin(), frames.end(), [&](const Frame& other) {
+        return arbitration_key(other) == arbitration_key(frame);
+      });
+      if (!taken) {
+        frames.push_back(frame);
+        stations.push_back(std::make_unique<Station>(bus));
+      }
+    }
+    bus.run_for(milliseconds(1));
+    for (std::size_t i = 0; i < frames.size(); ++i) {
+      stations[i]->node.send(frames[i]);
+    }
+    std::sort(frames.begin(), frames.end(), [](const Frame& a, const Frame& b) {
+      return arbitration_key(a) < arbitration_key(b);
+    });
+    bus.run_for(milliseconds(20));
+    ASSERT_EQ(listener.received, text_of(frames));
+    ASSERT_EQ(bus.statistics().transmit_errors, 0U);
+  }
+}
+
+TEST(CanBus, TheSameFrameFromTwoIsOneOnTheWireAndSentByBoth) {
+  CanBus bus;
+  Station a(bus);
+  Station b(bus);
+  Station listener(bus);
+  bus.run_for(milliseconds(1));
+  a.node.send(document_frame);
+  b.node.send(document_frame);
+  bus.run_for(milliseconds(2));
+  const Texts once{text_of(document_frame)};
+  EXPECT_EQ(listener.received, once);
+  EXPECT_EQ(a.sent, once);
+  EXPECT_EQ(b.sent, once);
+  EXPECT_EQ(a.received, Texts{});
+  EXPECT_EQ(bus.statistics().busy, bit * 97);
+  EXPECT_EQ(bus.statistics().transmit_errors, 0U);
+}
+
+TEST(CanBus, TwoThatTransmitAloneMustNotTakeEachOthersFrameForAnAcknowledgement) {
+  CanBus bus;
+  Station a(bus);
+  Station b(bus);
+  bus.run_for(milliseconds(1));
+  a.node.send(document_frame);
+  b.node.send(document_frame);
+  bus.run_for(milliseconds(1));
+  EXPECT_EQ(a.sent, Texts{});
+  EXPECT_GT(bus.statistics().transmit_errors, 1U);
+}
+
+TEST(CanBus, TheSameIdentifierWithOtherDataIsABitErrorTimeAndAgain) {
+  CanBus bus;
+  Station a(bus);
+  Station b(bus);
+  Station listener(bus);
+  bus.run_for(milliseconds(1));
+  a.node.send(extended(0x10000001, 0x00));
+  b.node.send(extended(0x10000001, 0x80));
+  // Up to the first bit of data, in which b's is recessive and a's dominant.
+  bus.run_for(bit * 60);
+  EXPECT_EQ(b.transmit_errors(), 8U) << "who sent the recessive bit";
+  EXPECT_EQ(a.transmit_errors(), 8U) << "whose frame the flag destroyed";
+  EXPECT_EQ(listener.receive_errors(), 1U);
+  bus.run_for(bit * 60 * 7);
+  EXPECT_EQ(listener.received, Texts{}) << "they retry together, and fail together";
+  bus.run_for(milliseconds(10));
+  // Error-passive at the same moment, both suspend; then whoever sends the dominant bit does not
+  // see the other's passive flag, and is through.
+  Texts expected{text_of(extended(0x10000001, 0x00)), text_of(extended(0x10000001, 0x80))};
+  EXPECT_EQ(listener.received, expected);
+  EXPECT_EQ(a.sent.size() + b.sent.size(), 2U);
+  EXPECT_GE(bus.statistics().transmit_errors, 32U);
+}
+
+// --- acknowledgement -----------------------------------------------------------------------------
+
+TEST(CanBus, ALoneNodeRetriesBecomesErrorPassiveAndNeverBusOff) {
+  CanBus bus;
+  Station lone(bus);
+  bus.run_for(milliseconds(1));
+  lone.node.send(document_frame);
+  std::vector<unsigned> counts;
+  for (int i = 0; i < 17; ++i) {
+    const std::uint64_t before = bus.statistics().transmit_errors;
+    while (bus.statistics().transmit_errors == before) {
+      bus.run_for(bit);
+    }
+    counts.push_back(lone.transmit_errors());
+  }
+  EXPECT_EQ(counts, (std::vector<unsigned>{8, 16, 24, 32, 40, 48, 56, 64, 72, 80, 88, 96, 104, 112,
+                                           120, 128, 128}));
+  bus.run_for(std::chrono::seconds(1));
+  EXPECT_EQ(lone.transmit_errors(), 128U);
+  EXPECT_EQ(lone.confinement(), Confinement::passive);
+  EXPECT_EQ(bus.statistics().frames, 0U);
+  EXPECT_EQ(lone.node.waiting(), 1U);
+  EXPECT_GT(bus.statistics().transmit_errors, 3000U);
+
+  Station other(bus);
+  bus.run_for(milliseconds(1));
+  EXPECT_EQ(other.received, Texts{text_of(document_frame)});
+  EXPECT_EQ(lone.sent, Texts{text_of(document_frame)});
+  EXPECT_EQ(lone.transmit_errors(), 127U);
+  EXPECT_EQ(lone.confinement(), Confinement::active);
+}
+
+TEST(CanBus, AListenerAcknowledgesNothing) {
+  CanBus bus;
+  Station lone(bus);
+  Station listener(bus, rate, Controller::Mode::listen_only);
+  bus.run_for(milliseconds(1));
+  lone.node.send(document_frame);
+  // 15 attempts: the sender's flag destroys the frame for the listener as well.
+  while (lone.transmit_errors() < 120) {
+    bus.run_for(bit);
+  }
+  bus.run_for(bit * 20);
+  EXPECT_EQ(listener.received, Texts{});
+  bus.run_for(milliseconds(100));
+  EXPECT_EQ(lone.sent, Texts{});
+  EXPECT_EQ(lone.transmit_errors(), 128U);
+  // A passive flag leaves the wire recessive as an end of frame does, and receivers do not look at
+  // the acknowledgement: the listener takes each further attempt for a frame.
+  EXPECT_EQ(listener.received.size(), bus.statistics().transmit_errors - 16);
+  EXPECT_EQ(listener.transmit_errors() + listener.receive_errors(), 0U);
+}
+
+TEST(CanBus, AListenerHearsWhatOthersAcknowledge) {
+  CanBus bus;
+  Station sender(bus);
+  Station receiver(bus);
+  Station listener(bus, rate, Controller::Mode::listen_only);
+  listener.node.send(extended(0));
+  send_without_end(sender, document_frame);
+  bus.run_for(milliseconds(100));
+  EXPECT_EQ(listener.received.size(), receiver.received.size());
+  EXPECT_GT(listener.received.size(), 500U);
+  EXPECT_EQ(listener.sent, Texts{});
+}
+
+// --- nodes of other rates ------------------------------------------------------------------------
+
+TEST(CanBus, ANodeAtAnotherRateDisturbsTheBusAndFallsSilentItself) {
+  for (const std::uint32_t wrong : {125'000U, 250'000U, 400'000U, 1'000'000U}) {
+    CanBus bus;
+    Station sender(bus);
+    Station receiver(bus);
+    Station stranger(bus, wrong);
+    bus.run_for(milliseconds(1));
+    send_without_end(sender, document_frame);
+    bus.run_for(milliseconds(100));
+    EXPECT_GT(bus.statistics().transmit_errors, 0U) << wrong;
+    EXPECT_GE(stranger.receive_errors(), 128U) << wrong;
+    EXPECT_NE(stranger.confinement(), Confinement::active) << wrong;
+    EXPECT_EQ(stranger.received, Texts{}) << wrong;
+  }
+}
+
+TEST(CanBus, AStrangersFramesDisturbTheBus) {
+  CanBus bus;
+  Station a(bus);
+  Station b(bus);
+  Station stranger(bus, 250'000);
+  bus.run_for(milliseconds(1));
+  stranger.node.send(document_frame);
+  bus.run_for(milliseconds(50));
+  EXPECT_EQ(stranger.sent, Texts{});
+  EXPECT_EQ(a.received, Texts{});
+  EXPECT_GE(a.receive_errors(), 128U);
+  EXPECT_GE(stranger.transmit_errors(), 128U);
+}
+
+TEST(CanBus, AListenerAtAnotherRateDisturbsNobody) {
+  for (const std::uint32_t wrong : {125'000U, 250'000U, 1'000'000U}) {
+    CanBus bus;
+    Station stranger(bus, wrong, Controller::Mode::listen_only);
+    Station sender(bus);
+    Station receiver(bus);
+    bus.run_for(milliseconds(1));
+    send_without_end(sender, document_frame);
+    const SimTime start = bus.now();
+    bus.run_for(bit * 97 * 500);
+    EXPECT_EQ(receiver.received.size(), 500U) << wrong;
+    EXPECT_EQ(bus.statistics().transmit_errors, 0U) << wrong;
+    EXPECT_EQ(bus.statistics().busy, bus.now() - start) << wrong;
+    EXPECT_GT(stranger.node.receive_errors_seen(), 0U) << wrong;
+    EXPECT_EQ(stranger.receive_errors(), 0U) << wrong;
+    EXPECT_EQ(stranger.received, Texts{}) << wrong;
+  }
+}
+
+TEST(CanBus, WhatAListenerAtAnotherRateMakesOfItIsNoLoad) {
+  for (const std::uint32_t wrong : {50'000U, 125'000U, 250'000U}) {
+    CanBus bus;
+    Station stranger(bus, wrong, Controller::Mode::listen_only);
+    Station sender(bus);
+    Station receiver(bus);
+    bus.run_for(milliseconds(1));
+    sender.node.send(document_frame);
+    bus.run_for(milliseconds(2));
+    EXPECT_EQ(bus.statistics().busy, bit * 97) << wrong;
+  }
+}
+
+TEST(CanBus, NodesAFewThousandthsApartFollowOneAnother) {
+  // Half a percent and one percent: what crystals and ceramic resonators make of 500 kbit/s.
+  for (const std::uint32_t other : {497'500U, 502'500U, 505'000U}) {
+    CanBus bus;
+    Station a(bus);
+    Station b(bus);
+    Station c(bus, other);
+    bus.run_for(milliseconds(1));
+    std::mt19937 generator = test::seeded_generator();
+    Texts from_a;
+    Texts from_c;
+    SimTime busy{0};
+    for (int i = 0; i < 500; ++i) {
+      Frame frame = test::random_frame(generator);
+      frame.length = static_cast<std::uint8_t>(frame.length % 9);
+      frame.kind = FrameKind::extended;
+      frame.id = UINT32_C(0x10000000) | (frame.id & UINT32_C(0xFFFFFE));
+      a.node.send(frame);
+      from_a.push_back(text_of(frame));
+      busy += bit * wire_bits(frame);
+      frame.id |= 1U;
+      busy += bit * wire_bits(frame);
+      c.node.send(frame);
+      from_c.push_back(text_of(frame));
+    }
+    bus.run_for(std::chrono::seconds(1));
+    EXPECT_EQ(bus.statistics().transmit_errors, 0U) << other;
+    EXPECT_EQ(c.received, from_a) << other;
+    EXPECT_EQ(a.received, from_c) << other;
+    EXPECT_EQ(a.receive_errors() + b.receive_errors() + c.receive_errors(), 0U) << other;
+    // Time in which nodes of both rates are busy counts once.
+    EXPECT_LT(bus.statistics().busy, busy * 102 / 100) << other;
+    EXPECT_GT(bus.statistics().busy, busy * 98 / 100) << other;
+  }
+}
+
+TEST(CanBus, NodesOfSeveralRatesThatStartTogetherBothStart) {
+  // Whoever joined first; the weaker one loses arbitration, and neither waits for the other.
+  for (const bool order : {false, true}) {
+    CanBus bus;
+    Station a(bus, order ? 500'000 : 501'000);
+    Station b(bus, order ? 501'000 : 500'000);
+    bus.run_for(milliseconds(1));
+    a.node.send(extended(0x10000002));
+    b.node.send(extended(0x10000001));
+    bus.run_for(milliseconds(1));
+    EXPECT_EQ(a.received, Texts{text_of(extended(0x10000001))}) << order;
+    EXPECT_EQ(b.received, Texts{text_of(extended(0x10000002))}) << order;
+    EXPECT_EQ(bus.statistics().arbitrations_lost, 1U) << order;
+  }
+}
+
+// --- statistics ----------------------------------------------------------------------------------
+
+TEST(CanBus, LoadOfASaturatedBusIsOne) {
+  CanBus bus;
+  Station sender(bus);
+  Station receiver(bus);
+  send_without_end(sender, document_frame);
+  bus.run_for(std::chrono::seconds(1));
+  // All but the 11 bits at the beginning.
+  EXPECT_NEAR(bus.statistics().load(), 1 - 11.0 / rate, 1e-9);
+}
+
+TEST(CanBus, LoadCountsEachFramesBits) {
+  CanBus bus;
+  EXPECT_EQ(bus.statistics().load(), 0);
+  Station sender(bus);
+  Station receiver(bus);
+  for (int i = 0; i < 100; ++i) {
+    bus.at(milliseconds(1 + i), [&] { sender.node.send(document_frame); });
+  }
+  bus.run_until(milliseconds(200));
+  EXPECT_EQ(bus.statistics().busy, bit * 97 * 100);
+  EXPECT_EQ(bus.statistics().time, SimTime(milliseconds(200)));
+  EXPECT_DOUBLE_EQ(bus.statistics().load(), 0.097);
+}
+
+TEST(CanBus, AnErrorFrameIsPartOfTheLoad) {
+  CanBus bus;
+  Station sender(bus);
+  Station receiver(bus);
+  bus.run_for(milliseconds(1));
+  sender.node.send(document_frame);
+  bus.after(bit * 45, [&] { bus.flip_next_bit(&sender.node.controller()); });
+  bus.run_for(milliseconds(1));
+  // 46 bits, then 6 of the sender's flag of which the last ones are the receiver's first, then the
+  // rest of the receiver's, 8 of the delimiter, 3 of the intermission; and the frame once more.
+  const SimTime busy = bus.statistics().busy - bit * 97;
+  EXPECT_GE(busy, bit * (46 + 6 + 8 + 3));
+  EXPECT_LE(busy, bit * (46 + 12 + 8 + 3));
+  EXPECT_EQ(bus.statistics().transmit_errors, 1U);
+  EXPECT_EQ(bus.statistics().frames, 1U);
+  EXPECT_EQ(bus.statistics().flipped_bits, 1U);
+}
+
+TEST(CanBus, LatencyByPriority) {
+  CanBus bus;
+  Station a(bus);
+  Station b(bus);
+  bus.run_for(milliseconds(1));
+  a.node.send(extended(0x10000001));
+  a.node.send(extended(0x10000001));
+  b.node.send(extended(0x00000001));
+  bus.run_for(milliseconds(1));
+  const BusStatistics statistics = bus.statistics();
+  const SimTime end_of_frame = bit * -4 + bit * 4 / 5;  // its last bit's sample point
+  const SimTime urgent = bit * wire_bits(extended(0x00000001));
+  const SimTime normal = bit * wire_bits(extended(0x10000001));
+  EXPECT_EQ(statistics.urgent.frames, 1U);
+  EXPECT_EQ(statistics.urgent.max, urgent + end_of_frame);
+  EXPECT_EQ(statistics.normal.frames, 2U);
+  EXPECT_EQ(statistics.normal.max, urgent + 2 * normal + end_of_frame);
+  EXPECT_EQ(statistics.normal.mean(), urgent + normal * 3 / 2 + end_of_frame);
+  EXPECT_EQ(BusStatistics::Latency{}.mean(), SimTime(0));
+}
+
+TEST(CanBus, ObserversSeeEachFrameOnceWithItsSender) {
+  CanBus bus;
+  Station a(bus);
+  Station b(bus);
+  Texts seen;
+  bus.on_frame([&](const Frame& frame, const Controller& sender) {
+    seen.push_back((&sender == &a.node.controller() ? "a " : "b ") + text_of(frame));
+  });
+  a.node.send(extended(0x10000001));
+  b.node.send(extended(0x10000002));
+  bus.run_for(milliseconds(2));
+  EXPECT_EQ(seen, (Texts{"a 10000001 DLC 1 00", "b 10000002 DLC 1 00"}));
 }
 
 }  // namespace

@@ -156,8 +156,10 @@ class Mcp2515 {
   /// poll() says that the chip is lost.
   /// Takes about 1 ms plus the wait for a slow oscillator, config.start_timeout_ms at most, plus 11
   /// bits of idle bus, 10 ms at most.
-  /// @return ok; bad_timing: the chip cannot run at this timing, nothing was touched; bad_argument:
-  ///         everything without Traits::all_kinds; no_chip: no answer, or not what was written;
+  /// @return ok; bad_timing: the chip cannot run at this timing; bad_argument: filters that cannot
+  /// keep
+  ///         the order (Mcp2515Filters::in_order), or everything without Traits::all_kinds; after
+  ///         these two nothing was touched. no_chip: no answer, or not what was written;
   ///         wrong_mode: the mode was not entered (the bus is never idle: stuck, or no
   ///         transceiver).
   ROIO_NODISCARD Status begin(const Mcp2515Config& config);
@@ -272,6 +274,7 @@ class Mcp2515 {
   // looking after the chip
   void tend();
   void check_chip();
+  void lose_chip();
   void forget_chip();
 
   Port port_;

@@ -13,6 +13,7 @@ namespace roio {
 
 namespace mcp2515 {
 constexpr uint8_t no_slot = 0xFF;
+constexpr uint8_t standard_id_shift = 18;    ///< Where the 11 bits lie among the 29.
 constexpr uint16_t start_up_us = 200;        ///< 128 clocks (8.1) of any oscillator above 640 kHz.
 constexpr uint32_t mode_timeout_us = 50000;  ///< One frame at 5 kbit/s, and 11 bits.
 constexpr uint8_t calls_between_checks = 64;
@@ -26,8 +27,7 @@ constexpr uint32_t clock_timeout_us = 20000;
 constexpr uint8_t clock_tolerance = 8;  ///< One part in so many; crystals in use are 1 in 4 apart.
 }  // namespace mcp2515
 
-// --- single accesses
-// ------------------------------------------------------------------------------------
+// --- single accesses -----------------------------------------------------------------------------
 
 ROIO_MCP2515_MEMBER(uint8_t)::read_register(Register address) {
   uint8_t value;
@@ -87,8 +87,7 @@ ROIO_MCP2515_MEMBER(void)::read_error_counters(uint8_t& transmit, uint8_t& recei
   receive = counters[1];
 }
 
-// --- starting
-// -------------------------------------------------------------------------------------------
+// --- starting ------------------------------------------------------------------------------------
 
 ROIO_MCP2515_MEMBER(void)::pause(uint16_t microseconds) {
   const uint32_t start = port_.microseconds();
@@ -121,8 +120,7 @@ ROIO_MCP2515_MEMBER(bool)::configure(const Mcp2515Config& config) {
   using mcp2515::Interrupt;
   using mcp2515::RxControl;
   const Mcp2515Filters& filters = config.filters;
-  const uint8_t interrupts =
-      Port::has_interrupt_line ? Interrupt::rx0 | Interrupt::rx1 | Interrupt::error : 0;
+  const uint8_t interrupts = Port::has_interrupt_line ? Interrupt::rx0 | Interrupt::rx1 : 0;
   // From the masks on: CNF3, CNF2, CNF1, CANINTE, CANINTF. The three TXnIF are set and never
   // cleared, so that every READ STATUS shows whether the chip still knows what it was told.
   const uint8_t setup[13] = {
@@ -161,7 +159,7 @@ ROIO_MCP2515_MEMBER(Status)::begin(const Mcp2515Config& config) {
   if (!is_valid(config.timing)) {
     return Status::bad_timing;
   }
-  if (config.everything && !Traits::all_kinds) {
+  if (!config.filters.in_order || (config.everything && !Traits::all_kinds)) {
     return Status::bad_argument;
   }
   forget_chip();
@@ -237,8 +235,7 @@ ROIO_MCP2515_MEMBER(Status)::check_clock(const Mcp2515Config& config, uint32_t o
   return difference <= told_khz / mcp2515::clock_tolerance ? Status::ok : Status::wrong_clock;
 }
 
-// --- what READ STATUS shows
-// -----------------------------------------------------------------------------
+// --- what READ STATUS shows ----------------------------------------------------------------------
 
 /// The three TXnIF are set, and the chip sends nothing but what it was told to. A chip that was
 /// reset, and lines stuck at 0 or 1, look different.
@@ -250,34 +247,31 @@ ROIO_MCP2515_MEMBER(bool)::is_plausible(uint8_t quick) const {
 
 ROIO_MCP2515_MEMBER(void)::note(uint8_t quick) {
   fresh_ = true;
-  if (!is_plausible(quick)) {
+  // All buffers in use looks like a line stuck at 1: that wants a second opinion, too.
+  if (!is_plausible(quick) || quick == QuickStatus::everything) {
     check_chip();
-    return;
+    quick = running_ ? read_quick_status() : 0;
+    if (!is_plausible(quick)) {
+      lose_chip();
+      return;
+    }
   }
   quick_ = quick & QuickStatus::any_rx;
-  // RXB1 alone was filled while RXB0 was full, and RXB0 has been read: what comes next into RXB0 is
-  // younger.
-  if (quick_ != QuickStatus::any_rx) {
-    rx1_is_older_ = quick_ == QuickStatus::rx1;
-  }
   settle(quick);
 }
 
-// --- receiving
-// ------------------------------------------------------------------------------------------
+// --- receiving -----------------------------------------------------------------------------------
 
 /// Whether a frame waits in the chip, as far as is known or can be seen.
 ROIO_MCP2515_MEMBER(bool)::find_received() {
   if (quick_ != 0) {
     return true;
   }
-  // Looked at already in this call, or nothing to look for.
-  if (fresh_ || (Port::has_interrupt_line && !port_.interrupt_line_is_low())) {
-    return false;
-  }
-  note(read_quick_status());
-  if (Port::has_interrupt_line && quick_ == 0) {
-    check_due_ = true;  // then it is an error that pulls the line
+  if (Port::has_interrupt_line) {
+    // Only received frames pull the line, and RXB0 is filled first.
+    quick_ = port_.interrupt_line_is_low() ? QuickStatus::rx0 : 0;
+  } else if (!fresh_) {
+    note(read_quick_status());
   }
   return quick_ != 0;
 }
@@ -300,49 +294,37 @@ ROIO_MCP2515_MEMBER(bool)::fetch(Frame& frame) {
   return true;
 }
 
-/// Reads a buffer, which frees it, and finds out what has come meanwhile.
+/// Reads a buffer, which frees it, and looks what has come meanwhile.
 ///
-/// The order of two full buffers is not in any register; it follows from what was seen when. RXB0
-/// is filled first, RXB1 only while RXB0 is full. So with both full RXB0 is older, unless RXB1 was
-/// full already when RXB0 was freed. Whether it was, shows right after: a frame takes longer on the
-/// bus than the look does, so at most one can have come in between, and that one went to RXB0.
-/// Nothing may interrupt the two.
-/// @return false: the chip was lost meanwhile, the frame cannot be trusted.
+/// The order of two full buffers is in no register; it follows from what was seen when. RXB0 is
+/// filled first, RXB1 only while RXB0 is full. So of two full buffers RXB0 is the older one, unless
+/// RXB1 was full already when RXB0 was freed. Whether it was, shows right after: a frame takes
+/// longer on the bus than the look does, so at most one can have come in between, and that one went
+/// to RXB0. Nothing may interrupt the two. The look also tells that the chip was there all the
+/// while, and it is the next call's first.
+/// @return false: there was no frame, or the chip was lost meanwhile and it cannot be trusted.
 ROIO_MCP2515_MEMBER(bool)::read_rx_buffer(uint8_t buffer, Frame& frame) {
-  uint8_t quick = 0;
-  bool looked = false;
+  uint8_t quick;
+  bool was_full;
   {
     Transaction transaction(port_);
     read_frame(transaction, buffer, frame);
-    quick_ &= static_cast<uint8_t>(~(1U << buffer));
-    if (quick_ == 0) {
-      typename Port::Uninterrupted together(port_);
-      transaction.restart();
-      looked = !Port::has_interrupt_line || port_.interrupt_line_is_low();
-      if (looked) {
-        transaction.exchange(static_cast<uint8_t>(Instruction::read_status));
-        quick = transaction.exchange(0);
-      }
-    }
+    // As long as the buffer is full the line is low; a spike on it made nothing of nothing.
+    was_full = !Port::has_interrupt_line || port_.interrupt_line_is_low();
+    typename Port::Uninterrupted together(port_);
+    transaction.restart();
+    transaction.exchange(static_cast<uint8_t>(Instruction::read_status));
+    quick = transaction.exchange(0);
   }
-  if (!looked) {
-    // Either the other buffer is known to be full, and what is left in RXB1 is the older one from
-    // now on; or the interrupt line says that nothing is there.
-    rx1_is_older_ = quick_ == QuickStatus::rx1;
-    return true;
-  }
-  rx1_is_older_ = false;
+  quick_ = 0;
   note(quick);
-  if (buffer == 0) {
-    rx1_is_older_ = (quick_ & QuickStatus::rx1) != 0;
-  }
-  if (quick_ != 0) {
-    check_due_ = check_due_ || buffer == 1 || rx1_is_older_;  // both were full for a while
-  }
+  rx1_is_older_ = buffer == 0 && (quick_ & QuickStatus::rx1) != 0;
+  // Perhaps both were full for a while, and a third frame was lost.
+  check_due_ = check_due_ || (quick_ != 0 && (buffer == 1 || rx1_is_older_));
   if (!running_) {
     ++counters_.discarded;
   }
-  return running_;
+  return running_ && was_full;
 }
 
 /// The buffer's bytes, only as many as the frame has. DLC 9..15 is 8 bytes (ISO 11898-1).
@@ -357,8 +339,8 @@ ROIO_MCP2515_MEMBER(void)::read_frame(Transaction& transaction, uint8_t buffer, 
   const bool remote =
       extended ? (dlc & mcp2515::remote_bit) != 0 : (id[1] & mcp2515::standard_remote_bit) != 0;
   frame.id = from_mcp2515_registers(id);
-  if (!extended) {
-    frame.id >>= 18;
+  if (Traits::all_kinds && !extended) {
+    frame.id >>= mcp2515::standard_id_shift;
   }
   frame.kind = extended ? (remote ? FrameKind::extended_remote : FrameKind::extended)
                         : (remote ? FrameKind::standard_remote : FrameKind::standard);
@@ -409,8 +391,7 @@ ROIO_MCP2515_MEMBER(Status)::poll() {
   return running_ ? Status::ok : Status::no_chip;
 }
 
-// --- sending
-// --------------------------------------------------------------------------------------------
+// --- sending -------------------------------------------------------------------------------------
 
 ROIO_MCP2515_MEMBER(Status)::send(const Frame& frame, uint8_t token) {
   if (!is_sendable(frame)) {
@@ -503,9 +484,9 @@ ROIO_MCP2515_MEMBER(bool)::load(const Waiting& entry) {
     return false;
   }
   const Frame& frame = entry.frame;
-  const bool extended = is_extended(frame.kind);
+  const bool extended = !Traits::all_kinds || is_extended(frame.kind);
   uint8_t id[4];
-  to_mcp2515_registers(extended ? frame.id : frame.id << 18, id);
+  to_mcp2515_registers(extended ? frame.id : frame.id << mcp2515::standard_id_shift, id);
   {
     Transaction transaction(port_);
     if (priority_[slot] == level) {
@@ -521,7 +502,7 @@ ROIO_MCP2515_MEMBER(bool)::load(const Waiting& entry) {
     transaction.exchange(static_cast<uint8_t>(id[1] | (extended ? mcp2515::extended_bit : 0U)));
     transaction.exchange(id[2]);
     transaction.exchange(id[3]);
-    const bool remote = is_remote(frame.kind);
+    const bool remote = Traits::all_kinds && is_remote(frame.kind);
     transaction.exchange(static_cast<uint8_t>(frame.length | (remote ? mcp2515::remote_bit : 0U)));
     for (uint8_t i = 0; i < frame.length && !remote; ++i) {
       transaction.exchange(frame.data[i]);
@@ -586,8 +567,7 @@ ROIO_MCP2515_MEMBER(void)::abort() {
   }
 }
 
-// --- looking after the chip
-// -----------------------------------------------------------------------------
+// --- looking after the chip ----------------------------------------------------------------------
 
 /// What is done at the end of every call that has time.
 ROIO_MCP2515_MEMBER(void)::tend() {
@@ -623,8 +603,7 @@ ROIO_MCP2515_MEMBER(void)::check_chip() {
   if ((flags & Interrupt::tx_any) != Interrupt::tx_any ||
       ((values[2] ^ control_) & Control::mode_mask) != 0 ||
       (values[3] & ~Control::abort_all) != control_) {
-    forget_chip();
-    ++counters_.chip_losses;
+    lose_chip();
     return;
   }
   const uint8_t seen = flags & (Interrupt::error | Interrupt::message_error);
@@ -642,6 +621,13 @@ ROIO_MCP2515_MEMBER(void)::check_chip() {
     ++counters_.bus_offs;
   }
   error_flags_ = errors;
+}
+
+ROIO_MCP2515_MEMBER(void)::lose_chip() {
+  if (running_) {
+    ++counters_.chip_losses;
+  }
+  forget_chip();
 }
 
 /// The chip has no memory of what it was told. What it had to send may or may not have gone out.

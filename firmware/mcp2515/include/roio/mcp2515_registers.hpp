@@ -61,6 +61,7 @@ struct QuickStatus {
   static constexpr uint8_t rx0 = 0x01;
   static constexpr uint8_t rx1 = 0x02;
   static constexpr uint8_t any_rx = rx0 | rx1;
+  static constexpr uint8_t everything = 0xFF;
   static constexpr uint8_t txif = 0x08 | 0x20 | 0x80;
   static constexpr uint8_t txreq(uint8_t buffer) {
     return static_cast<uint8_t>(0x04U << (2U * buffer));

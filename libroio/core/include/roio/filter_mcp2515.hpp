@@ -37,18 +37,22 @@ struct Mcp2515Filters {
 /// The 29 bits of an identifier (or mask) as the chip keeps them, EXIDE clear:
 ///   SIDH 7..0 = id 28..21 | SIDL 7..5 = id 20..18, 1..0 = id 17..16 | EID8 = id 15..8 | EID0 =
 ///   id 7..0
+/// Byte by byte, since an AVR shifts a long word one bit at a time.
 inline void to_mcp2515_registers(uint32_t id, uint8_t registers[4]) {
-  registers[0] = static_cast<uint8_t>(id >> 21);
-  registers[1] = static_cast<uint8_t>(((id >> 13) & 0xE0U) | ((id >> 16) & 0x03U));
+  const uint8_t high = static_cast<uint8_t>(id >> 24);
+  const uint8_t middle = static_cast<uint8_t>(id >> 16);
+  registers[0] = static_cast<uint8_t>((high << 3) | (middle >> 5));
+  registers[1] = static_cast<uint8_t>(((middle << 3) & 0xE0U) | (middle & 0x03U));
   registers[2] = static_cast<uint8_t>(id >> 8);
   registers[3] = static_cast<uint8_t>(id);
 }
 
 /// The inverse of to_mcp2515_registers(); other bits of SIDL are ignored.
 inline uint32_t from_mcp2515_registers(const uint8_t registers[4]) {
-  return (static_cast<uint32_t>(registers[0]) << 21) |
-         (static_cast<uint32_t>(registers[1] & 0xE0U) << 13) |
-         (static_cast<uint32_t>(registers[1] & 0x03U) << 16) |
+  const uint8_t high = static_cast<uint8_t>(registers[0] >> 3);
+  const uint8_t middle = static_cast<uint8_t>((registers[0] << 5) | ((registers[1] >> 3) & 0x1CU) |
+                                              (registers[1] & 0x03U));
+  return (static_cast<uint32_t>(high) << 24) | (static_cast<uint32_t>(middle) << 16) |
          (static_cast<uint32_t>(registers[2]) << 8) | registers[3];
 }
 
@@ -245,7 +249,7 @@ inline uint32_t shared_mask(const FilterRule* rules, uint8_t count, uint8_t seco
   uint32_t mask = id_mask;
   const FilterRule* first_of[2] = {nullptr, nullptr};
   for (uint8_t r = 0; r < count; ++r) {
-    const FilterRule*& first = first_of[(second >> r) & 1U];
+    const FilterRule*& first = first_of[(static_cast<unsigned>(second) >> r) & 1U];
     if (first == nullptr) {
       first = &rules[r];
     }

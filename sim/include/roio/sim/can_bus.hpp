@@ -4,7 +4,7 @@
 ///
 ///   sim::CanBus bus;
 ///   sim::HostNode pc(bus, 500'000);
-///   sim::Mcp2515 chip(bus, {.osc_hz = 16'000'000});
+///   sim::Mcp2515Chip chip(bus, {.osc_hz = 16'000'000});
 ///   bus.run_for(std::chrono::milliseconds(1));
 ///
 /// Nodes of one bit rate (to a thousandth) keep step exactly. A node of another rate samples the
@@ -18,6 +18,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <random>
 #include <roio/frame.hpp>
 #include <roio/sim/controller.hpp>
@@ -35,11 +36,14 @@ struct BusStatistics {
     SimTime max{0};
     [[nodiscard]] SimTime mean() const;
   };
-  std::uint64_t frames = 0;           ///< Sent and acknowledged.
+  std::uint64_t frames = 0;           ///< Sent and acknowledged; one for each sender.
   std::uint64_t transmit_errors = 0;  ///< Attempts that ended in an error.
   std::uint64_t arbitrations_lost = 0;
-  std::uint64_t flipped_bits = 0;  ///< Faults injected by set_bit_errors().
-  SimTime busy{0};                 ///< Start-of-frame to intermission, error frames included.
+  std::uint64_t flipped_bits = 0;  ///< By set_bit_errors() and flip_next_bit().
+  SimTime busy{0};  ///< Start-of-frame to the end of the intermission; error frames, too.
+  SimTime time{0};  ///< Since the simulation began.
+  /// The part of the time that the bus was busy, 0..1.
+  [[nodiscard]] double load() const;
   Latency urgent;
   Latency normal;
 };
@@ -61,11 +65,14 @@ class CanBus : private Controller::Monitor {
   ~CanBus() override;
 
   [[nodiscard]] SimTime now() const { return now_; }
+  /// What is to happen at `time` itself: actions do, bits are left for the next run.
+  /// @throws std::logic_error when called from within a bit, that is, by a ControllerClient.
   void run_until(SimTime time);
   void run_for(SimTime span) { run_until(now_ + span); }
 
-  /// Calls `action` at a time from now on; same times in the order asked for. A time gone by counts
-  /// as now.
+  /// Calls `action` at a time from now on, before the bits that begin or are sampled then; same
+  /// times in the order asked for. A time gone by counts as now. An action may run the bus in its
+  /// turn.
   void at(SimTime time, std::function<void()> action);
   void after(SimTime span, std::function<void()> action) { at(now_ + span, std::move(action)); }
 
@@ -74,35 +81,29 @@ class CanBus : private Controller::Monitor {
   void join(Controller& controller, const NodeTiming& timing);
   void leave(Controller& controller);
 
-  // --- faults
-  // ---------------------------------------------------------------------------------------
+  // --- faults ------------------------------------------------------------------------------------
 
-  /// From now on, each bit is flipped with this probability: every other time for all nodes alike,
-  /// else as one node sees it. 0: no longer.
+  /// From now on, each bit is flipped with this probability: every other time for all nodes of a
+  /// rate alike, else as one node sees it. 0: no longer. An idle bus has no bits.
   void set_bit_errors(double probability, std::uint32_t seed);
   /// Holds the wire at dominant, as a short circuit or a broken transceiver does.
   void hold_dominant(bool hold) { held_ = hold; }
-  /// Flips one bit at the next sample of all nodes (of one, when given).
+  /// Flips one bit, the next that is sampled, for all nodes of a rate (for one, when given).
   void flip_next_bit(Controller* victim = nullptr);
   /// The node's transmitter is cut off from the wire: it still hears.
-  void cut_transmitter(Controller& controller, bool cut);
+  static void cut_transmitter(Controller& controller, bool cut) { controller.cut_transmitter(cut); }
 
-  // --- what happens
-  // -----------------------------------------------------------------------------------
+  // --- what happens ------------------------------------------------------------------------------
 
   /// Called with every frame sent and acknowledged, at its last bit.
   void on_frame(std::function<void(const Frame&, const Controller& sender)> observer);
-  [[nodiscard]] const BusStatistics& statistics() const { return statistics_; }
+  [[nodiscard]] BusStatistics statistics() const;
 
  private:
-  struct Member {
-    Controller* controller;
-    bool cut = false;
-  };
   // Controllers that keep step with one another.
   struct Domain {
     NodeTiming timing;
-    std::vector<Member> members;
+    std::vector<Controller*> members;  // null: left within the bit under way
     SimTime bit_start{0};
     bool sampling = false;  // the next event is the sample point, not the next bit
     std::uint8_t driven = recessive;
@@ -110,6 +111,10 @@ class CanBus : private Controller::Monitor {
     [[nodiscard]] SimTime next() const {
       return sampling ? bit_start + timing.sample_point : bit_start + timing.bit;
     }
+  };
+  struct Joining {
+    Controller* controller;
+    NodeTiming timing;
   };
   struct Action {
     SimTime time;
@@ -122,13 +127,17 @@ class CanBus : private Controller::Monitor {
   [[nodiscard]] std::uint8_t wire() const;
   [[nodiscard]] Domain* next_domain() const;
   void skip_to(SimTime time);
+  void step(Domain& domain);
   void begin_bit(Domain& domain);
   void sample(Domain& domain);
+  void count_busy(const Domain& domain);
+  void admit(Controller& controller, const NodeTiming& timing);
+  void tidy();
   void sample_with_fault(Domain& domain, std::uint8_t level);
+  std::optional<Controller*> draw_victim(const Domain& domain);
   void falling_edge(const Domain& source);
   void draw_next_fault();
   void run_actions();
-  Member* find(const Controller& controller);
   void on_transmitted(const Controller& sender) override;
   void on_transmit_error(const Controller& sender) override;
   void on_arbitration_lost(const Controller& sender) override;
@@ -137,6 +146,10 @@ class CanBus : private Controller::Monitor {
   std::vector<std::unique_ptr<Domain>> domains_;
   std::vector<Action> actions_;  // a heap, the earliest first
   std::uint64_t actions_so_far_ = 0;
+  bool within_bit_ = false;
+  bool left_within_bit_ = false;
+  std::vector<Joining> joining_;  // within the bit under way
+  SimTime busy_until_{0};
   bool held_ = false;
   bool flip_next_ = false;
   Controller* flip_victim_ = nullptr;

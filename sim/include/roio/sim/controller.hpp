@@ -29,8 +29,8 @@ struct Submission {
   SimTime since;  ///< When it was asked for; latency counts from here.
 };
 
-/// What a controller asks of its owner and tells it. All calls come while a bit is sampled, except
-/// next_submission(), which comes as a bit begins.
+/// What a controller asks of its owner and tells it. All calls come while a bit begins or is
+/// sampled: the owner may switch the mode, join and leave the bus, and request, but not run it.
 class ControllerClient {
  public:
   ControllerClient() = default;
@@ -48,11 +48,12 @@ class ControllerClient {
   virtual void on_transmit_error(BusError error) = 0;
   /// A frame of another node came in whole. Its length is the DLC as it was, 0..15.
   virtual void on_received(const Frame& frame) = 0;
-  /// An error in another node's frame, or outside of any.
+  /// An error in another node's frame, or outside of any (in a flag or a delimiter).
   virtual void on_receive_error(BusError error) = 0;
   /// An error counter or the state it makes has changed.
   virtual void on_confinement_changed() = 0;
-  /// It has seen the 11 recessive bits that it waited for since set_mode(), and takes part now.
+  /// It has seen the 11 recessive bits that it waited for, since set_mode() or, when it only
+  /// listens, since an error; it takes part now.
   virtual void on_integrated() {}
   /// The wire became dominant while the controller was asleep.
   virtual void on_bus_activity() {}
@@ -92,6 +93,9 @@ class Controller {
   /// @param monitor null: nobody.
   void set_monitor(Monitor* monitor) { monitor_ = monitor; }
 
+  /// The transmitter is cut off from the wire: what the node drives does not get there.
+  void cut_transmitter(bool cut) { cut_ = cut; }
+
   /// Tells that next_submission() may have something.
   void request() { requested_ = true; }
 
@@ -108,7 +112,8 @@ class Controller {
   [[nodiscard]] bool busy() const { return state_ >= State::frame; }
   /// Whether nothing happens to it as long as the bus is recessive and nobody requests anything.
   [[nodiscard]] bool quiet() const {
-    return state_ <= State::asleep || (state_ == State::idle && !requested_);
+    return state_ <= State::asleep ||
+           (state_ == State::idle && !(requested_ && mode_ == Mode::normal));
   }
   /// The frame of its last attempt.
   [[nodiscard]] const Submission& submission() const { return submission_; }
@@ -119,9 +124,15 @@ class Controller {
     if (state_ == State::idle && requested_) {
       try_to_start();
     }
-    return output_;
+    return cut_ ? recessive : output_;
   }
-  void sample(std::uint8_t level);
+  void sample(std::uint8_t level) {
+    if (state_ == State::frame) {
+      sample_frame(level);
+    } else {
+      sample_outside_frame(level);
+    }
+  }
 
  private:
   // In this order: busy() counts on it.
@@ -146,6 +157,7 @@ class Controller {
   void try_to_start();
   void start_frame(std::uint8_t level);
   void sample_frame(std::uint8_t level);
+  void sample_outside_frame(std::uint8_t level);
   bool sample_own_bit(std::uint8_t level);
   void end_of_crc();
   void sample_tail(std::uint8_t level);
@@ -159,8 +171,9 @@ class Controller {
   void set_next_output();
   void lose_arbitration();
   void transmitted();
-  void received();
-  void fail(BusError error, bool counts = true);
+  void fail(BusError error);
+  void fail(BusError error, unsigned amount);
+  void acknowledged();
   void overload();
   void count_error(unsigned amount);
   void confine();
@@ -172,10 +185,12 @@ class Controller {
   Mode mode_ = Mode::off;
   Confinement confinement_ = Confinement::active;
   std::uint8_t output_ = recessive;
+  bool cut_ = false;
   bool requested_ = false;
   bool transmitting_ = false;
   bool was_transmitter_ = false;         // of the frame before, for suspend and for error counters
   bool passive_flag_ = false;            // the error flag under way is recessive
+  bool after_error_flag_ = false;        // the flag before was one of error, not of overload
   bool owed_acknowledge_error_ = false;  // counted only if a dominant bit shows up in the flag
   bool crc_matches_ = false;
   std::uint8_t count_ = 0;        // bits of the present state

@@ -19,7 +19,8 @@ class HostNode : private ControllerClient {
   ~HostNode() override;
 
   /// Queues a frame; extended ones with bit 28 clear go ahead of those that have it set, and within
-  /// these two the order is kept. A length of 9..15 is sent as that DLC.
+  /// these two the order is kept. A length of 9..15 is sent as that DLC with 8 bytes.
+  /// @throws std::invalid_argument for an error report, an identifier or a length out of range.
   void send(const Frame& frame);
   /// Called with every frame of others, once it is whole.
   void on_receive(Receiver receiver) { receiver_ = std::move(receiver); }

@@ -8,6 +8,7 @@
 #include <array>
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <roio/sim/can_bus.hpp>
 #include <string>
@@ -58,15 +59,13 @@ class Mcp2515Chip : private ControllerClient {
   explicit Mcp2515Chip(CanBus& bus, const Mcp2515Options& options = {});
   ~Mcp2515Chip() override;
 
-  // --- SPI (12): what the chip shifts out while it shifts a byte in
-  // ---------------------------------
+  // --- SPI (12): what the chip shifts out while it shifts a byte in ------------------------------
 
   void select();
   std::uint8_t exchange(std::uint8_t in);
   void deselect();
 
-  // --- pins: true is high
-  // -----------------------------------------------------------------------------
+  // --- pins: true is high ------------------------------------------------------------------------
 
   [[nodiscard]] bool interrupt_pin() const;
   /// RXnBF; none while the pin is not enabled and floats.
@@ -79,8 +78,7 @@ class Mcp2515Chip : private ControllerClient {
   /// Called whenever the interrupt pin changes.
   void on_interrupt_pin(std::function<void(bool)> listener) { pin_listener_ = std::move(listener); }
 
-  // --- for tests
-  // --------------------------------------------------------------------------------------
+  // --- for tests ---------------------------------------------------------------------------------
 
   /// A frame as if it had just come in from the bus: through the filters, into a buffer.
   void receive(const Frame& frame) { on_received(frame); }
@@ -115,7 +113,12 @@ class Mcp2515Chip : private ControllerClient {
   void write_register(std::uint8_t address, std::uint8_t value, std::uint8_t mask = 0xFF);
   void register_written(std::uint8_t address, std::uint8_t before);
   void modify_register(std::uint8_t address, std::uint8_t value, std::uint8_t mask);
+  void control_written(std::uint8_t before);
+  void transmit_control_written(int buffer, std::uint8_t before);
+  void receive_control_written(std::uint8_t address);
   [[nodiscard]] std::uint8_t status_register() const;
+  [[nodiscard]] std::uint8_t buffer_pin_register() const;
+  [[nodiscard]] std::uint8_t request_pin_register() const;
   [[nodiscard]] std::uint8_t interrupt_code() const;
   [[nodiscard]] bool is_readable_now(std::uint8_t address) const;
   void set_flag(std::uint8_t flag);
@@ -130,6 +133,8 @@ class Mcp2515Chip : private ControllerClient {
 
   // power, modes, bit timing
   void start(bool power_on);
+  void reset_registers(bool power_on);
+  void start_oscillator(SimTime crystal_start);
   void oscillator_runs();
   void request_mode(std::uint8_t request);
   void update_mode();
@@ -138,9 +143,9 @@ class Mcp2515Chip : private ControllerClient {
   void wake_up();
   void apply_bit_timing();
   [[nodiscard]] NodeTiming timing() const;
-  [[nodiscard]] std::uint8_t quanta_per_bit() const;
   [[nodiscard]] bool timing_is_valid() const;
-  [[nodiscard]] SimTime quantum() const;
+  /// Unless a reset comes first.
+  void later(SimTime span, std::function<void()> action);
 
   // transmission
   void request_transmission(int buffer);
@@ -151,11 +156,12 @@ class Mcp2515Chip : private ControllerClient {
   void end_attempt(std::uint8_t error_flag);
   [[nodiscard]] int next_buffer() const;
   [[nodiscard]] Frame transmit_frame(int buffer) const;
-  void transmission_done(int buffer);
+  void transmission_done(const Frame& frame);
   void start_loopback();
-  void finish_loopback(std::uint64_t era);
+  void finish_loopback(const Frame& frame);
 
   // reception
+  void assemble(const Frame& frame);
   void store(const Frame& frame, int buffer, int filter);
   void overflow(std::uint8_t flag);
   [[nodiscard]] int matching_filter(const Frame& frame, int buffer) const;
@@ -186,8 +192,8 @@ class Mcp2515Chip : private ControllerClient {
   std::array<SimTime, 3> requested_at_{};
   std::array<bool, 3> rts_pins_{true, true, true};
   std::uint8_t error_bits_ = 0;  // EFLG's lower six as they were last told
-  std::uint64_t era_ = 0;        // counts resets and mode changes: outdates scheduled events
-  bool loopback_under_way_ = false;
+  std::array<std::uint8_t, max_data_length> assembled_{};
+  std::shared_ptr<const void> era_;  // since the last reset: what was to happen later dies with it
   bool pin_ = true;
   std::function<void(bool)> pin_listener_;
   std::function<void(const Frame&)> accepted_listener_;

@@ -27,21 +27,17 @@ class SpiWire {
   SpiWire(CanBus& bus, Mcp2515Chip& chip, const Timing& timing)
       : bus_(bus), chip_(chip), timing_(timing) {}
 
-  // --- the microcontroller's side: the bus runs while a byte is under way
-  // -----------------------------
+  // --- the microcontroller's side: the bus runs while a byte is under way ------------------------
 
   void select();
   std::uint8_t exchange(std::uint8_t out);
   void deselect();
-  [[nodiscard]] bool interrupt_line_is_low() const {
-    return fault_ == Fault::none && !chip_.interrupt_pin();
-  }
+  [[nodiscard]] bool interrupt_line_is_low();
   /// The microcontroller does something else for a while.
   void pass(SimTime span) { bus_.run_for(span); }
   [[nodiscard]] SimTime now() const { return bus_.now(); }
 
-  // --- faults
-  // -------------------------------------------------------------------------------------------
+  // --- faults ------------------------------------------------------------------------------------
 
   /// From the next byte on; in the middle of a transaction the chip sees its select line go high.
   void set_fault(Fault fault);
@@ -50,8 +46,12 @@ class SpiWire {
   /// Once, before the byte that comes after `bytes` more, chip select goes high and low again.
   void lose_select_after(std::uint32_t bytes) { lose_select_in_ = bytes + 1; }
 
-  // --- for tests
-  // ----------------------------------------------------------------------------------------
+  /// The next look at the interrupt line finds it low.
+  void spike_on_interrupt_line() { spike_ = true; }
+  /// No fault any more, nor one to come.
+  void clear_faults();
+
+  // --- for tests ---------------------------------------------------------------------------------
 
   /// Called before each byte and before each edge of chip select.
   void on_step(std::function<void()> listener) { step_ = std::move(listener); }
@@ -76,6 +76,7 @@ class SpiWire {
   std::bernoulli_distribution flip_{0};
   std::mt19937 generator_;
   std::uint32_t lose_select_in_ = 0;  // 0: not at all
+  bool spike_ = false;
   bool selected_ = false;
   bool first_byte_ = false;
   std::uint64_t bytes_ = 0;
