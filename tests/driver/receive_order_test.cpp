@@ -1,7 +1,13 @@
 // Frames come out in the order in which they were on the bus, whatever happens while they are read.
 //
-// tests/driver/mutations.py takes the rules of the driver's ordering away one at a time and sees
-// these tests fail; its list says which.
+// tests/mutation takes the driver's rules for that away one at a time, and sees these tests fail:
+//   the older frame is in RXB1 if that was full when RXB0   AFrameRollsOverWhileRxb0IsRead,
+//   was freed, and is read first then                        EveryInterleaving...
+//   no longer, once RXB1 has been read                       EveryInterleaving...
+//   RXB0 first when both were filled unseen                  ReadsRxb0FirstWhenBothWereFilledUnseen
+//   the look comes right after a buffer was freed            EveryInterleaving...
+//   a look that was nonsense is repeated                     IsFoundAgainAfterALookThatWentWrong
+//   a spike on the interrupt line is no frame                ASpikeOnTheInterruptLineIsNoFrame
 #include "rig.hpp"
 
 namespace roio::test {
@@ -102,7 +108,8 @@ TEST(ReceiveOrder, AStatusReadForSendingKnowsTheOrderToo) {
 }
 
 TEST(ReceiveOrder, IsFoundAgainAfterALookThatWentWrong) {
-  // B is in RXB1 when A has been read, and the look that would have shown it comes back as nonsense.
+  // B is in RXB1 when A has been read, and the look that would have shown it comes back as
+  // nonsense.
   Rig<> rig;
   rig.begin();
   rig.chip.receive(numbered('A'));

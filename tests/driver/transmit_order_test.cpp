@@ -1,7 +1,15 @@
 // Frames leave in the order in which they were given, urgent ones first; each once, and what became
 // of it is told truly.
 //
-// tests/mutation takes the rules of this order away one at a time and sees these tests fail.
+// tests/mutation takes the driver's rules for that away one at a time, and sees these tests fail:
+//   buffer 2 behind buffer 1 takes a lower priority      TransmitTrouble: contention
+//   at the lowest, the chip runs empty first             ManyInARow
+//   a buffer that is pending is left alone               ManyInARow
+//   buffer 0 is for urgent frames                        AnUrgentFrameIsNotHeldUp...
+//   urgent frames queue ahead of normal ones, and        UrgentFramesKeepTheirOrderAmongThemselves
+//   behind urgent ones
+//   a frame waits behind the queue                       TransmitTrouble: none
+//   what became of a frame taken back is read            Abort.TakesBackWhatHasNotBegun
 #include <algorithm>
 #include <optional>
 #include <random>

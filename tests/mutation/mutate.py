@@ -1,0 +1,179 @@
+#!/usr/bin/env python3
+"""Takes one rule of the driver's ordering away, and sees tests/driver fail.
+
+  mutate.py --list          the names of the mutations
+  mutate.py NAME            compiles the tests against the driver without that rule, and runs them
+
+Exit status 0 when exactly the tests that the mutation names noticed (and perhaps others of their file),
+1 when one of them did not, 2 when the mutation does not fit the driver any more.
+In the environment: SOURCE, WORK (a folder of its own), CXX, LAUNCHER (may be empty), SIM (the simulator's
+library).
+"""
+
+import os
+import pathlib
+import re
+import shlex
+import subprocess
+import sys
+
+RECEIVE = "receive_order_test.cpp"
+TRANSMIT = "transmit_order_test.cpp"
+GUARD = 240  # seconds; a driver without its rules may hang
+
+# name: (what the driver no longer does, text of mcp2515_impl.hpp, what stands there instead,
+#        test file, tests that must fail)
+MUTATIONS = {
+    "rxb1_is_older_when_rxb0_was_freed_beside_it": (
+        "remember that RXB1, full when RXB0 was freed, has the older frame",
+        "rx1_is_older_ = buffer == 0 && (quick_ & QuickStatus::rx1) != 0;",
+        "rx1_is_older_ = false;",
+        RECEIVE, ["ReceiveOrder.AFrameRollsOverWhileRxb0IsRead",
+                  "ReceiveOrder.EveryInterleavingWhilePolling",
+                  "ReceiveOrder.EveryInterleavingWithAnInterruptLine"]),
+    "rxb0_is_older_when_rxb1_was_freed": (
+        "forget that RXB1 was older once it has been read",
+        "rx1_is_older_ = buffer == 0 && (quick_ & QuickStatus::rx1) != 0;",
+        "rx1_is_older_ = (quick_ & QuickStatus::rx1) != 0;",
+        RECEIVE, ["ReceiveOrder.EveryInterleavingWhilePolling",
+                  "ReceiveOrder.EveryInterleavingWithAQueue"]),
+    "rxb0_first_when_both_were_found_full": (
+        "read RXB0 before RXB1 when both were filled unseen",
+        "const bool first = (quick_ & QuickStatus::rx0) != 0 && !rx1_is_older_;",
+        "const bool first = (quick_ & QuickStatus::rx1) == 0;",
+        RECEIVE, ["ReceiveOrder.ReadsRxb0FirstWhenBothWereFilledUnseen",
+                  "ReceiveOrder.EveryInterleavingWhilePolling"]),
+    "older_rxb1_before_rxb0": (
+        "read RXB1 first when it is the older one",
+        "(quick_ & QuickStatus::rx0) != 0 && !rx1_is_older_;",
+        "(quick_ & QuickStatus::rx0) != 0;",
+        RECEIVE, ["ReceiveOrder.AFrameRollsOverWhileRxb0IsRead",
+                  "ReceiveOrder.EveryInterleavingWithAQueue"]),
+    "look_right_after": (
+        "look at the status right after a buffer was freed, with nothing in between",
+        "    transaction.restart();\n    transaction.exchange(static_cast<uint8_t>(Instruction::read_status));",
+        "    transaction.restart();\n    for (int i = 0; i < 30; ++i) {\n      transaction.restart();\n    }\n"
+        "    transaction.exchange(static_cast<uint8_t>(Instruction::read_status));",
+        RECEIVE, ["ReceiveOrder.EveryInterleavingWhilePolling",
+                  "ReceiveOrder.EveryInterleavingWithAnInterruptLine"]),
+    "a_line_that_is_not_low_means_no_frame": (
+        "look at the interrupt line again before it believes that there was a frame",
+        "return running_ && was_full;",
+        "return running_ && (was_full || true);",
+        RECEIVE, ["ReceiveOrder.ASpikeOnTheInterruptLineIsNoFrame"]),
+    "a_look_that_went_wrong_is_repeated": (
+        "look again when the look was nonsense",
+        "quick = running_ ? read_quick_status() : 0;",
+        "quick = running_ ? QuickStatus::txif : 0;",
+        RECEIVE, ["ReceiveOrder.IsFoundAgainAfterALookThatWentWrong"]),
+    "lower_priority_behind_buffer_1": (
+        "give a frame that goes to buffer 2 behind one in buffer 1 a lower priority",
+        "level = static_cast<uint8_t>(level_ - 1U);",
+        "level = level_;",
+        TRANSMIT, ["All/TransmitTrouble.EachFrameIsSentOnceAndReportedTruly/contention"]),
+    "empty_chip_before_priorities_begin_anew": (
+        "let the chip run empty before the priorities begin at the top again",
+        "return level_ > 0 ? 2 : mcp2515::no_slot;",
+        "return 2;",
+        TRANSMIT, ["TransmitOrder.ManyInARow"]),
+    "a_buffer_for_urgent_frames": (
+        "keep buffer 0 for urgent frames",
+        "  if (urgent || Traits::only_buffer_0) {",
+        "  if (urgent || Traits::only_buffer_0 || normal == 0x06U) {",
+        TRANSMIT, ["TransmitOrder.AnUrgentFrameIsNotHeldUpByANormalOneThatKeepsLosing"]),
+    "urgent_frames_enter_the_queue_ahead": (
+        "queue an urgent frame ahead of the normal ones",
+        "  if (is_urgent(entry.frame)) {\n    while (place > 0) {",
+        "  if (false) {\n    while (place > 0) {",
+        TRANSMIT, ["TransmitOrder.UrgentFramesKeepTheirOrderAmongThemselves"]),
+    "urgent_frames_keep_their_order_in_the_queue": (
+        "queue an urgent frame behind the urgent ones",
+        "      if (is_urgent(tx_queue_[ahead].frame)) {\n        break;\n      }\n",
+        "",
+        TRANSMIT, ["TransmitOrder.UrgentFramesKeepTheirOrderAmongThemselves"]),
+    "a_frame_waits_behind_the_queue": (
+        "let a frame wait while others of its priority are in the queue",
+        "tx_queue_.empty() || (urgent && !is_urgent(tx_queue_.front().frame));",
+        "true;",
+        TRANSMIT, ["All/TransmitTrouble.EachFrameIsSentOnceAndReportedTruly/none"]),
+    "a_pending_buffer_is_left_alone": (
+        "leave a buffer alone that the chip is still to send",
+        "    default:\n      return mcp2515::no_slot;",
+        "    default:\n      level = level_;\n      return 2;",
+        TRANSMIT, ["TransmitOrder.ManyInARow"]),
+    "what_became_of_it_is_read": (
+        "read what became of a frame when it was taken back",
+        "  if (!aborting_ && !one_shot) {\n    return TxOutcome::sent;\n  }",
+        "  if (true) {\n    return TxOutcome::sent;\n  }",
+        TRANSMIT, ["Abort.TakesBackWhatHasNotBegun",
+                   "All/TransmitTrouble.EachFrameIsSentOnceAndReportedTruly/aborts"]),
+}
+
+
+def fail(status, text):
+    print(f"mutate: {text}", file=sys.stderr)
+    sys.exit(status)
+
+
+def write_mutated_headers(source, work, old, new):
+    headers = source / "firmware/mcp2515/include/roio"
+    mutated = work / "include/roio"
+    mutated.mkdir(parents=True, exist_ok=True)
+    for header in headers.glob("*.hpp"):
+        text = header.read_text()
+        if header.name == "mcp2515_impl.hpp":
+            if text.count(old) != 1:
+                fail(2, f"expected once in {header}, found {text.count(old)} times:\n{old}")
+            text = text.replace(old, new)
+        (mutated / header.name).write_text(text)
+
+
+def compile_tests(source, work, test_file):
+    program = work / "mutated_test"
+    include = [work / "include", source / "libroio/core/include", source / "sim/include",
+               source / "tests/core/support", source / "tests/driver"]
+    flags = ["-std=c++20", "-O1", *(f"-I{folder}" for folder in include)]
+    launcher = shlex.split(os.environ.get("LAUNCHER", ""))
+    compiled = work / "mutated_test.o"
+    subprocess.run([*launcher, os.environ["CXX"], *flags, "-c", source / "tests/driver" / test_file,
+                    "-o", compiled], check=True)
+    subprocess.run([os.environ["CXX"], compiled, os.environ["SIM"], "-lgtest", "-lgtest_main",
+                    "-lpthread", "-o", program], check=True)
+    return program
+
+
+def failing_tests(program, tests):
+    """Runs the tests that have to fail, each by itself: a mutated driver may hang or crash."""
+    failed = []
+    for test in tests:
+        try:
+            done = subprocess.run([program, f"--gtest_filter={test}"], capture_output=True, text=True,
+                                  timeout=GUARD)
+        except subprocess.TimeoutExpired:
+            failed.append(test)
+            continue
+        if not re.search(r"\[ +RUN +\] " + re.escape(test), done.stdout):
+            fail(2, f"there is no test {test}")
+        if done.returncode != 0:
+            failed.append(test)
+    return failed
+
+
+def main():
+    if sys.argv[1:] == ["--list"]:
+        print(";".join(MUTATIONS), end="")
+        return 0
+    if len(sys.argv) != 2 or sys.argv[1] not in MUTATIONS:
+        fail(2, "expected --list or the name of a mutation")
+    what, old, new, test_file, tests = MUTATIONS[sys.argv[1]]
+    source, work = pathlib.Path(os.environ["SOURCE"]), pathlib.Path(os.environ["WORK"])
+    write_mutated_headers(source, work, old, new)
+    program = compile_tests(source, work, test_file)
+    failed = failing_tests(program, tests)
+    for test in tests:
+        print(f"a driver that does not {what}: {test} {'fails' if test in failed else 'DOES NOT NOTICE'}")
+    return 0 if failed == tests else 1
+
+
+if __name__ == "__main__":
+    sys.exit(main())
