@@ -243,5 +243,137 @@ TEST(FitMcp2515, NoSharingOutIsTighterWhenItDoesNotFit) {
   ASSERT_NO_FATAL_FAILURE(expect_tightest(generator, 6, 7, 4));
 }
 
+// --- filters that keep the order -----------------------------------------------------------------
+
+std::vector<Registers> all_registers(const Mcp2515Filters& image) {
+  std::vector<Registers> all;
+  for (const auto& mask : image.mask) {
+    all.push_back(registers(mask));
+  }
+  for (const auto& filter : image.filter) {
+    all.push_back(registers(filter));
+  }
+  return all;
+}
+
+TEST(FitMcp2515InOrder, APlainNodeIsThatOfTheDocumentWhicheverWayItIsMade) {
+  for (int subnet = 0; subnet <= 31; ++subnet) {
+    for (int node = 0; node <= 254; ++node) {
+      const Address own{static_cast<std::uint8_t>(subnet), static_cast<std::uint8_t>(node)};
+      FilterProgram<2> program;
+      ASSERT_EQ(compile(interest_of(own), program), Status::ok);
+      const Mcp2515Filters fitted = fit_mcp2515_in_order(program);
+      const Mcp2515Filters direct = mcp2515_filters_of(own);
+      if (program.size() == 2) {
+        ASSERT_EQ(all_registers(direct), all_registers(fitted)) << subnet << '.' << node;
+      } else {
+        // 127 and the broadcast address differ in one bit, and are one rule to a program.
+        ASSERT_EQ(node, 127);
+        for (const std::uint8_t to : {std::uint8_t{127}, std::uint8_t{255}, std::uint8_t{126}}) {
+          const std::uint32_t id =
+              DestinationSubnetField::put(own.subnet) | DestinationNodeField::put(to);
+          ASSERT_EQ(accepts(direct, id), to != 126);
+          ASSERT_EQ(accepts(fitted, id), to != 126);
+        }
+      }
+      ASSERT_TRUE(fitted.exact && fitted.in_order && direct.exact && direct.in_order);
+    }
+  }
+  FilterProgram<2> program;
+  ASSERT_EQ(compile(interest_of({0, 2}), program), Status::ok);
+  EXPECT_EQ(all_registers(mcp2515_filters_of({0, 2})), all_registers(fit_mcp2515(program)));
+}
+
+TEST(FitMcp2515InOrder, EmptyProgramListensForNobody) {
+  const Mcp2515Filters image = fit_mcp2515_in_order(FilterProgram<1>());
+  EXPECT_TRUE(accepts(image, 0x0C0000FF));
+  for (std::uint32_t bit = 0; bit < 29; ++bit) {
+    EXPECT_FALSE(accepts(image, 0x0C0000FF ^ (1U << bit))) << "bit " << bit;
+  }
+}
+
+/// Whether RXB0 accepts every identifier of the universe that RXB1 does.
+bool rxb0_accepts_all(const Mcp2515Filters& image, const test::Universe& universe) {
+  const auto passes = [&image](int filter, std::uint32_t id) {
+    const std::uint32_t mask = from_mcp2515_registers(image.mask[filter < 2 ? 0 : 1]);
+    return ((id ^ from_mcp2515_registers(image.filter[filter])) & mask) == 0;
+  };
+  for (std::uint32_t i = 0; i < universe.size(); ++i) {
+    const std::uint32_t id = universe.id(i);
+    const bool in_rxb0 = passes(0, id) || passes(1, id);
+    if (!in_rxb0 && (passes(2, id) || passes(3, id) || passes(4, id) || passes(5, id))) {
+      return false;
+    }
+  }
+  return true;
+}
+
+TEST(FitMcp2515InOrder, NeverRejectsAndKnowsWhetherItIsExact) {
+  std::mt19937 generator = test::seeded_generator();
+  int exact = 0;
+  int inexact = 0;
+  int out_of_order = 0;
+  for (int round = 0; round < 600; ++round) {
+    const test::Universe universe(generator);
+    const auto program = random_program<10>(universe, generator, test::up_to(generator, 10));
+    const Mcp2515Filters image = fit_mcp2515_in_order(program);
+    ++(image.exact ? exact : inexact);
+    ASSERT_NO_FATAL_FAILURE(expect_sound(program, image, universe, generator));
+    ASSERT_NO_FATAL_FAILURE(expect_no_stray_filter(image));
+    ASSERT_TRUE(image.in_order);
+    ASSERT_TRUE(rxb0_accepts_all(image, universe));
+    const Mcp2515Filters wide = fit_mcp2515(program);
+    if (!program.empty()) {  // what nobody sends lies outside of most universes
+      ASSERT_EQ(wide.in_order, rxb0_accepts_all(wide, universe));
+    }
+    out_of_order += wide.in_order ? 0 : 1;
+  }
+  EXPECT_GT(exact, 0);
+  EXPECT_GT(inexact, 0);
+  EXPECT_GT(out_of_order, 0);
+}
+
+/// How few identifiers any sharing out of the rules over two filters behind one mask lets through.
+std::uint32_t tightest_of_two(const std::vector<FilterRule>& rules,
+                              const test::Universe& universe) {
+  std::uint32_t best = universe.size();
+  for (std::uint32_t way = 0; way < (1U << rules.size()); ++way) {
+    std::uint32_t mask = id_mask;
+    std::array<std::uint32_t, 2> match{};
+    std::array<bool, 2> used{};
+    for (std::size_t r = 0; r < rules.size(); ++r) {
+      const std::size_t f = (way >> r) & 1U;
+      mask &= rules[r].mask & (used[f] ? ~(match[f] ^ rules[r].match) : id_mask);
+      match[f] = used[f] ? match[f] : rules[r].match;
+      used[f] = true;
+    }
+    std::uint32_t count = 0;
+    for (std::uint32_t i = 0; i < universe.size(); ++i) {
+      const std::uint32_t id = universe.id(i);
+      const bool passes =
+          (used[0] && ((id ^ match[0]) & mask) == 0) || (used[1] && ((id ^ match[1]) & mask) == 0);
+      count += passes ? 1U : 0U;
+    }
+    best = std::min(best, count);
+  }
+  return best;
+}
+
+TEST(FitMcp2515InOrder, NoSharingOutIsTighter) {
+  std::mt19937 generator = test::seeded_generator();
+  for (std::uint32_t rules = 1; rules <= 8; ++rules) {
+    for (int round = 0; round < 40; ++round) {
+      const test::Universe universe(generator, 8);
+      const auto program = random_program<8>(universe, generator, rules);
+      const Mcp2515Filters image = fit_mcp2515_in_order(program);
+      std::uint32_t passes = 0;
+      for (std::uint32_t i = 0; i < universe.size(); ++i) {
+        passes += accepts(image, universe.id(i)) ? 1U : 0U;
+      }
+      ASSERT_EQ(passes, tightest_of_two({program.begin(), program.end()}, universe));
+    }
+  }
+}
+
 }  // namespace
 }  // namespace roio

@@ -355,8 +355,8 @@ Mcp2515Filters fit_mcp2515_in_order(const FilterProgram<Capacity>& program) {
   return image;
 }
 
-/// The image of a plain node: its own address, and broadcasts to its own subnet. The same as
-/// compiling and fitting interest_of(own), for a fraction of the flash.
+/// The image of a plain node: its own address, and broadcasts to its own subnet. Accepts
+/// what interest_of(own), compiled and fitted, does, for a fraction of the flash.
 /// @param own a valid source address; of another one the low bits are taken.
 inline Mcp2515Filters mcp2515_filters_of(Address own) {
   constexpr uint32_t mask = DestinationSubnetField::mask() | DestinationNodeField::mask();
