@@ -25,7 +25,7 @@ Segments segments_of(std::uint8_t cnf1, std::uint8_t cnf2, std::uint8_t cnf3) {
 }
 
 constexpr std::int64_t clocks_per_quantum(std::uint8_t cnf1) {
-  return 2 * ((cnf1 & 0x3F) + 1);
+  return std::int64_t{2} * ((cnf1 & 0x3F) + 1);
 }
 
 }  // namespace
@@ -40,13 +40,12 @@ NodeTiming Mcp2515Chip::timing() const {
           cycles(clocks * s.jump, options_.osc_hz)};
 }
 
-// The rules of 5.3; that the propagation segment be long enough for the cable is nothing that a
-// chip could check.
+// The rules of 5.3. A PS2 above SJW has the two quanta of the information processing time; that the
+// propagation segment be long enough for the cable is nothing that a chip could check.
 bool Mcp2515Chip::timing_is_valid() const {
   const Segments s =
       segments_of(registers_[map::cnf1], registers_[map::cnf2], registers_[map::cnf3]);
-  return s.propagation + s.phase1 >= s.phase2 && s.phase2 >= information_processing_time &&
-         s.phase2 > s.jump;
+  return s.propagation + s.phase1 >= s.phase2 && s.phase2 > s.jump;
 }
 
 std::uint32_t Mcp2515Chip::bitrate_bps() const {

@@ -77,31 +77,40 @@ void Mcp2515Chip::assemble(const Frame& frame) {
   std::copy_n(frame.data, bytes, assembled_.begin());
 }
 
-// Figure 4-3: RXB0 has the first look; what it accepts and cannot hold rolls over, when it may.
+// Figure 4-3: RXB0 has the first look, and RXB1 sees only what RXB0 does not accept.
 void Mcp2515Chip::on_received(const Frame& frame) {
   assemble(frame);
-  const bool full0 = (registers_[map::canintf] & map::rxif(0)) != 0;
-  const bool full1 = (registers_[map::canintf] & map::rxif(1)) != 0;
-  const bool rolls_over = (registers_.at(map::receive_control(0)) & map::bukt) != 0;
-  const int filter0 = matching_filter(frame, 0);
-  const int filter1 = filter0 == no_filter ? matching_filter(frame, 1) : no_filter;
-  if (filter0 != no_filter) {
-    if (!full0) {
-      store(frame, 0, filter0);
-    } else if (!rolls_over) {
-      overflow(map::rx0ovr);
-    } else if (!full1) {
-      store(frame, 1, filter0);
-    } else {
-      overflow(options_.full_sets_rx0ovr ? map::rx0ovr : map::rx1ovr);
-    }
-  } else if (filter1 == no_filter) {
-    ++events_.filtered;
-  } else if (!full1) {
-    store(frame, 1, filter1);
+  if (const int filter0 = matching_filter(frame, 0); filter0 != no_filter) {
+    offer_to_rxb0(frame, filter0);
+  } else if (const int filter1 = matching_filter(frame, 1); filter1 != no_filter) {
+    offer_to_rxb1(frame, filter1, map::rx1ovr);
   } else {
-    overflow(map::rx1ovr);
+    ++events_.filtered;
   }
+}
+
+// What RXB0 accepts and cannot hold rolls over, when it may.
+void Mcp2515Chip::offer_to_rxb0(const Frame& frame, int filter) {
+  const bool rolls_over = (registers_.at(map::receive_control(0)) & map::bukt) != 0;
+  if (!is_full(0)) {
+    store(frame, 0, filter);
+  } else if (rolls_over) {
+    offer_to_rxb1(frame, filter, options_.full_sets_rx0ovr ? map::rx0ovr : map::rx1ovr);
+  } else {
+    overflow(map::rx0ovr);
+  }
+}
+
+void Mcp2515Chip::offer_to_rxb1(const Frame& frame, int filter, std::uint8_t overflow_flag) {
+  if (!is_full(1)) {
+    store(frame, 1, filter);
+  } else {
+    overflow(overflow_flag);
+  }
+}
+
+bool Mcp2515Chip::is_full(int buffer) const {
+  return (registers_[map::canintf] & map::rxif(buffer)) != 0;
 }
 
 void Mcp2515Chip::overflow(std::uint8_t flag) {

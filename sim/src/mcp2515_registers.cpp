@@ -107,7 +107,7 @@ void Mcp2515Chip::write_register(std::uint8_t address, std::uint8_t value, std::
 // What follows from a write, beyond the bits that have changed.
 void Mcp2515Chip::register_written(std::uint8_t address, std::uint8_t before) {
   if (map::is_canctrl(address)) {
-    return control_written(before);
+    return control_written();
   }
   switch (address) {
     case map::transmit_control(0):
@@ -129,9 +129,9 @@ void Mcp2515Chip::register_written(std::uint8_t address, std::uint8_t before) {
   }
 }
 
-void Mcp2515Chip::control_written(std::uint8_t before) {
+void Mcp2515Chip::control_written() {
   const std::uint8_t control = registers_[map::canctrl];
-  if ((control & ~before & map::abat) != 0) {
+  if ((control & map::abat) != 0) {
     abort_all();
   }
   request_mode(static_cast<std::uint8_t>(control >> map::reqop_shift));

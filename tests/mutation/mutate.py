@@ -68,22 +68,22 @@ MUTATIONS = {
         RECEIVE, ["ReceiveOrder.IsFoundAgainAfterALookThatWentWrong"]),
     "lower_priority_behind_buffer_1": (
         "give a frame that goes to buffer 2 behind one in buffer 1 a lower priority",
-        "level = static_cast<uint8_t>(level_ - 1U);",
-        "level = level_;",
+        "  --level;\n  return 2;",
+        "  return 2;",
         TRANSMIT, ["All/TransmitTrouble.EachFrameIsSentOnceAndReportedTruly/contention"]),
     "empty_chip_before_priorities_begin_anew": (
         "let the chip run empty before the priorities begin at the top again",
-        "return level_ > 0 ? 2 : mcp2515::no_slot;",
-        "return 2;",
+        "  if (in_2 || level == 0) {",
+        "  if (in_2) {",
         TRANSMIT, ["TransmitOrder.ManyInARow"]),
     "a_buffer_for_urgent_frames": (
         "keep buffer 0 for urgent frames",
         "  if (urgent || Traits::only_buffer_0) {",
-        "  if (urgent || Traits::only_buffer_0 || normal == 0x06U) {",
+        "  if (urgent || Traits::only_buffer_0 || (pending_ & 0x50U) == 0x50U) {",
         TRANSMIT, ["TransmitOrder.AnUrgentFrameIsNotHeldUpByANormalOneThatKeepsLosing"]),
     "urgent_frames_enter_the_queue_ahead": (
         "queue an urgent frame ahead of the normal ones",
-        "  if (is_urgent(entry.frame)) {\n    while (place > 0) {",
+        "  if (is_urgent(frame)) {\n    while (place > 0) {",
         "  if (false) {\n    while (place > 0) {",
         TRANSMIT, ["TransmitOrder.UrgentFramesKeepTheirOrderAmongThemselves"]),
     "urgent_frames_keep_their_order_in_the_queue": (
@@ -93,13 +93,13 @@ MUTATIONS = {
         TRANSMIT, ["TransmitOrder.UrgentFramesKeepTheirOrderAmongThemselves"]),
     "a_frame_waits_behind_the_queue": (
         "let a frame wait while others of its priority are in the queue",
-        "tx_queue_.empty() || (urgent && !is_urgent(tx_queue_.front().frame));",
+        "tx_queue_.empty() || (is_urgent(frame) && !is_urgent(tx_queue_.front().frame));",
         "true;",
         TRANSMIT, ["All/TransmitTrouble.EachFrameIsSentOnceAndReportedTruly/none"]),
     "a_pending_buffer_is_left_alone": (
         "leave a buffer alone that the chip is still to send",
-        "    default:\n      return mcp2515::no_slot;",
-        "    default:\n      level = level_;\n      return 2;",
+        "  if (in_2 || level == 0) {",
+        "  if (level == 0) {",
         TRANSMIT, ["TransmitOrder.ManyInARow"]),
     "what_became_of_it_is_read": (
         "read what became of a frame when it was taken back",

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <memory>
+#include <optional>
 #include <roio/frame_length.hpp>
 #include <roio/sim/can_bus.hpp>
 #include <set>
@@ -215,6 +216,50 @@ TEST(BitErrors, ComeAtTheRateAskedForAndTheSameForASeed) {
   EXPECT_NE(a.bus.statistics().busy, c.bus.statistics().busy);
   const auto bits = static_cast<double>(a.bus.statistics().busy / bit);
   EXPECT_NEAR(static_cast<double>(a.bus.statistics().flipped_bits), bits / 1000, 0.3 * bits / 1000);
+}
+
+/// Notes each bit that it sees dominant.
+class Sleeper final : public ControllerClient {
+ public:
+  explicit Sleeper(CanBus& bus) : bus_(bus) {
+    bus.join(controller_, timing_of(rate));
+    controller_.set_mode(Controller::Mode::asleep);
+  }
+  ~Sleeper() override { bus_.leave(controller_); }
+  std::set<SimTime> dominant_bits;
+
+ private:
+  std::optional<Submission> next_submission() override { return std::nullopt; }
+  void on_transmitted() override {}
+  void on_arbitration_lost() override {}
+  void on_transmit_error(BusError /*error*/) override {}
+  void on_received(const Frame& /*frame*/) override {}
+  void on_receive_error(BusError /*error*/) override {}
+  void on_confinement_changed() override {}
+  void on_bus_activity() override { dominant_bits.insert(bus_.now()); }
+
+  CanBus& bus_;
+  Controller controller_{*this};
+};
+
+TEST(BitErrors, HitEverybodyHalfOfTheTimeAndElseOneNode) {
+  CanBus bus;
+  Sleeper a(bus);
+  Sleeper b(bus);
+  bus.set_bit_errors(0.1, 1);
+  bus.hold_dominant(true);
+  constexpr int bits = 20'000;
+  bus.run_for(bit * bits);
+  std::set<SimTime> seen_by_any = a.dominant_bits;
+  seen_by_any.insert(b.dominant_bits.begin(), b.dominant_bits.end());
+  const auto flipped = static_cast<double>(bus.statistics().flipped_bits);
+  EXPECT_NEAR(flipped, 0.1 * bits, 0.01 * bits);
+  const auto for_both = static_cast<double>(bits - seen_by_any.size());
+  const auto for_a = static_cast<double>(bits - a.dominant_bits.size()) - for_both;
+  const auto for_b = static_cast<double>(bits - b.dominant_bits.size()) - for_both;
+  EXPECT_EQ(for_a + for_b + for_both, flipped);
+  EXPECT_NEAR(for_both, flipped / 2, flipped / 20);
+  EXPECT_NEAR(for_a, flipped / 4, flipped / 20);
 }
 
 TEST(BitErrors, StopWhenToldTo) {

@@ -125,10 +125,11 @@ TEST(CanBus, ActionsComeAtTheirTimeInTheOrderAskedFor) {
     bus.at(SimTime(5), [&] { note("gone by"); });
     bus.after(SimTime(300), [&] { note("fifth"); });
   });
+  bus.at(SimTime(100), [&] { note("between"); });
   bus.at(SimTime(1001), [&] { note("never"); });
   bus.run_until(SimTime(1000));
-  EXPECT_EQ(order, (Texts{"first 100", "second 100", "gone by 100", "third 200", "fourth 200",
-                          "fifth 400"}));
+  EXPECT_EQ(order, (Texts{"first 100", "second 100", "between 100", "gone by 100", "third 200",
+                          "fourth 200", "fifth 400"}));
   EXPECT_EQ(bus.now(), SimTime(1000));
 }
 
@@ -222,28 +223,28 @@ TEST(CanBus, AStationMayLeaveInTheMiddleOfItsFrame) {
 TEST(CanBus, StationsMayLeaveAndJoinInACallback) {
   CanBus bus;
   Station sender(bus);
-  std::unique_ptr<Station> others[3];
-  for (auto& other : others) {
-    other = std::make_unique<Station>(bus);
-  }
+  auto leaver = std::make_unique<Station>(bus);
   Station middle(bus);
+  Station other(bus);
   Station last(bus);
-  std::unique_ptr<Station> newcomer;
+  std::vector<std::unique_ptr<Station>> newcomers;
   middle.node.on_receive([&](const Frame&) {
-    for (auto& other : others) {
-      other.reset();
+    leaver.reset();
+    while (newcomers.size() < 50) {
+      newcomers.push_back(std::make_unique<Station>(bus));
     }
-    newcomer = std::make_unique<Station>(bus);
   });
   sender.node.send(document_frame);
   bus.run_for(milliseconds(1));
-  ASSERT_NE(newcomer, nullptr);
+  ASSERT_EQ(newcomers.size(), 50U);
+  EXPECT_EQ(other.received, Texts{text_of(document_frame)});
   EXPECT_EQ(last.received, Texts{text_of(document_frame)});
   middle.node.on_receive(nullptr);
   sender.node.send(document_frame);
   bus.run_for(milliseconds(1));
   EXPECT_EQ(last.received.size(), 2U);
-  EXPECT_EQ(newcomer->received, Texts{text_of(document_frame)});
+  EXPECT_EQ(newcomers.back()->received, Texts{text_of(document_frame)});
+  EXPECT_EQ(bus.statistics().transmit_errors, 0U);
 }
 
 TEST(CanBus, AControllerMayLeaveAndJoinAgainInItsOwnCallback) {
@@ -551,6 +552,28 @@ TEST(CanBus, NodesAFewThousandthsApartFollowOneAnother) {
   }
 }
 
+TEST(CanBus, AStartOfFrameAtAnyMomentSynchronisesNodesOfOtherRates) {
+  CanBus bus;
+  Station a(bus);
+  Station c(bus, 502'500);
+  Station cut(bus);
+  bus.run_for(milliseconds(1));
+  // While this one is bus-off, bits are counted, and time does not stand still between frames.
+  CanBus::cut_transmitter(cut.node.controller(), true);
+  cut.node.send(document_frame);
+  bus.run_for(milliseconds(1));
+  ASSERT_EQ(cut.confinement(), Confinement::bus_off);
+  for (int i = 0; i < 8; ++i) {
+    (i % 2 == 0 ? a : c).node.send(document_frame);
+    bus.run_for(std::chrono::microseconds(250) + bit * i / 8);
+  }
+  ASSERT_EQ(cut.confinement(), Confinement::bus_off);
+  EXPECT_EQ(a.received.size(), 4U);
+  EXPECT_EQ(c.received.size(), 4U);
+  EXPECT_EQ(a.transmit_errors() + a.receive_errors(), 0U);
+  EXPECT_EQ(c.transmit_errors() + c.receive_errors(), 0U);
+}
+
 TEST(CanBus, NodesOfSeveralRatesThatStartTogetherBothStart) {
   // Whoever joined first; the weaker one loses arbitration, and neither waits for the other.
   for (const bool order : {false, true}) {
@@ -630,6 +653,16 @@ TEST(CanBus, LatencyByPriority) {
   EXPECT_EQ(statistics.normal.max, urgent + 2 * normal + end_of_frame);
   EXPECT_EQ(statistics.normal.mean(), urgent + normal * 3 / 2 + end_of_frame);
   EXPECT_EQ(BusStatistics::Latency{}.mean(), SimTime(0));
+}
+
+TEST(CanBus, StandardFramesCountAsNormal) {
+  CanBus bus;
+  Station sender(bus);
+  Station receiver(bus);
+  sender.node.send({0x001, FrameKind::standard, 0, {}});
+  bus.run_for(milliseconds(1));
+  EXPECT_EQ(bus.statistics().normal.frames, 1U);
+  EXPECT_EQ(bus.statistics().urgent.frames, 0U);
 }
 
 TEST(CanBus, ObserversSeeEachFrameOnceWithItsSender) {

@@ -58,6 +58,17 @@ TEST(Mcp2515Power, AResetStartsTheTimerButNotTheCrystal) {
   }
 }
 
+TEST(Mcp2515Power, AnotherResetStartsTheTimerAnew) {
+  ChipRig rig;
+  rig.chip.reset_pin();
+  rig.bus.run_for(microseconds(4));
+  rig.chip.reset_pin();
+  rig.bus.run_for(microseconds(7));
+  EXPECT_EQ(rig.read(0x0F), 0x00);
+  rig.bus.run_for(microseconds(1));
+  EXPECT_EQ(rig.read(0x0F), 0x87);
+}
+
 TEST(Mcp2515Power, AResetEndsWhatIsUnderWay) {
   ChipRig rig;
   rig.go();
@@ -195,6 +206,19 @@ TEST(Mcp2515Modes, AMessageThatNobodyAcknowledgesHoldsTheChangeUp) {
   }
 }
 
+TEST(Mcp2515Modes, AWaitingMessageTakenBackFreesTheChangeAtOnce) {
+  ChipRig rig;
+  rig.go();
+  rig.load_standard(0, 0x123);
+  rig.peer.send({0x100, FrameKind::standard, 8, {}});
+  rig.run_bits(20);
+  rig.request_to_send(1);
+  rig.write(0x0F, 0x80);
+  EXPECT_EQ(rig.read(0x0E) & 0xE0, 0x00);
+  rig.write(0x30, 0x00);
+  EXPECT_EQ(rig.read(0x0E) & 0xE0, 0x80);
+}
+
 TEST(Mcp2515Modes, AMessageTakenBackThatLosesArbitrationFreesTheChange) {
   ChipRig rig;
   rig.go();
@@ -207,6 +231,25 @@ TEST(Mcp2515Modes, AMessageTakenBackThatLosesArbitrationFreesTheChange) {
   EXPECT_EQ(rig.read(0x0E) & 0xE0, 0x00) << "it is still on the wire";
   rig.run_bits(25);
   EXPECT_EQ(rig.read(0x0E) & 0xE0, 0x80);
+}
+
+TEST(Mcp2515Modes, InConfigurationModeTheChipIsNoPartOfTheBus) {
+  ChipRig rig;
+  sim::HostNode witness(rig.bus, ChipRig::rate);
+  rig.write(0x28, Bytes{0x02, 0xB4, 0x01});  // 250 kbit/s
+  rig.write(0x0F, 0x60);
+  rig.run_bits(50);
+  rig.write(0x0F, 0x80);
+  ASSERT_EQ(rig.read(0x0E), 0x80);
+  for (unsigned errors = 1; errors <= 10; ++errors) {
+    rig.peer.send({0x123, FrameKind::standard, 8, {}});
+    rig.run_bits(30 + errors);
+    rig.bus.flip_next_bit();
+    rig.run_bits(300);
+    ASSERT_EQ(rig.peer.waiting(), 0U);
+    EXPECT_EQ(rig.bus.statistics().transmit_errors, errors) << "the fault hits those who are";
+  }
+  EXPECT_EQ(rig.read(0x2C), 0x00);
 }
 
 // --- loopback mode (10.4) ------------------------------------------------------------------------
@@ -250,6 +293,15 @@ TEST(Mcp2515Modes, LoopbackKeepsPrioritiesAndFilters) {
   EXPECT_EQ(rig.on_bus, Texts{});
 }
 
+TEST(Mcp2515Modes, LoopbackTakesWhatWasRequestedBefore) {
+  ChipRig rig;
+  rig.load_standard(0, 0x123);
+  rig.request_to_send(1);
+  rig.go(0x40);
+  rig.run_bits(100);
+  EXPECT_EQ(rig.read(0x2C), 0x05);
+}
+
 TEST(Mcp2515Modes, LoopbackIsNotLeftInTheMiddleOfAFrame) {
   ChipRig rig;
   rig.go(0x40);
@@ -267,6 +319,22 @@ TEST(Mcp2515Modes, LoopbackIsNotLeftInTheMiddleOfAFrame) {
   rig.request_to_send(1);
   rig.run_bits(100);
   EXPECT_EQ(rig.read(0x2C), 0x05) << "and it works again";
+}
+
+TEST(Mcp2515Modes, AResetEndsALoopbackUnderWay) {
+  ChipRig rig;
+  rig.go(0x40);
+  rig.load_standard(0, 0x123);
+  rig.request_to_send(1);
+  rig.run_bits(20);
+  rig.chip.reset_pin();
+  rig.run_bits(20);
+  rig.go(0x40);
+  rig.run_bits(60);
+  EXPECT_EQ(rig.read(0x2C), 0x00) << "it does not come any more";
+  rig.request_to_send(1);
+  rig.run_bits(100);
+  EXPECT_EQ(rig.read(0x2C), 0x05);
 }
 
 TEST(Mcp2515Modes, LoopbackDoesNotHearTheBus) {
@@ -386,6 +454,11 @@ TEST(Mcp2515Modes, AsleepItTakesNoRequestForAnotherMode) {
   rig.run_bits(100);
   EXPECT_EQ(rig.read(0x0E), 0x20);
   EXPECT_EQ(rig.violations().size(), 1U);
+  rig.request_to_send(1);
+  rig.write(0x30, 0x00);
+  rig.run_bits(100);
+  EXPECT_EQ(rig.read(0x0E), 0x20)
+      << "nor is the old request remembered when a buffer is taken back";
 }
 
 TEST(Mcp2515Modes, WhatIsRequestedAsleepIsSentWhenItIsNormalAgain) {

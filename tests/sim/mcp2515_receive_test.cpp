@@ -276,11 +276,24 @@ TEST(Mcp2515Receive, RxmTurnsTheFiltersOff) {
   }
 }
 
-TEST(Mcp2515Receive, ReservedRxmsAreNoted) {
-  ChipRig rig;
-  rig.write(0x60, 0x20);
-  rig.write(0x70, 0x40);
-  EXPECT_EQ(rig.violations().size(), 2U);
+TEST(Mcp2515Receive, ReservedRxmsAreNotedAndFilterByKind) {
+  struct Row {
+    const char* why;
+    std::uint8_t rxb0ctrl;
+    std::uint32_t id;
+    int canintf;
+  };
+  constexpr Row rows[] = {
+      {"01 took standard messages that meet a filter", 0x20, 0x100, 0x01},
+      {"not those that do not", 0x20, 0x7FF, 0x00},
+      {"10 took extended messages only", 0x40, 0x100, 0x00},
+  };
+  for (const Row& row : rows) {
+    SixFilters rig(row.rxb0ctrl, 0x00);
+    rig.peer_sends({row.id, FrameKind::standard, 0, {}});
+    EXPECT_EQ(rig.read(0x2C), row.canintf) << row.why;
+    EXPECT_EQ(rig.violations(), Texts{"RXM 01 and 10 are reserved"});
+  }
 }
 
 // --- rollover and overflow (figure 4-3) ----------------------------------------------------------
@@ -314,8 +327,9 @@ TEST(Mcp2515Receive, FollowsTheFlowChart) {
   };
   for (const Row& row : rows) {
     SixFilters rig(row.rxb0ctrl, 0x00);
-    for (std::uint8_t number = 0; number < row.ids.size(); ++number) {
-      rig.peer_sends({row.ids[number], FrameKind::standard, 1, {number}});
+    std::uint8_t number = 0;
+    for (const std::uint32_t id : row.ids) {
+      rig.peer_sends({id, FrameKind::standard, 1, {number++}});
     }
     EXPECT_EQ(rig.read(0x2C), row.canintf) << row.why;
     EXPECT_EQ(rig.read(0x2D), row.eflg) << row.why;

@@ -48,8 +48,8 @@ TEST(Mcp2515Spi, AddressesAbove7fAreNoted) {
 TEST(Mcp2515Spi, BitModifyTakesOneByte) {
   ChipRig rig;
   rig.write(0x2B, Bytes{0x00, 0x00});
-  EXPECT_EQ(rig.spi({0x05, 0x2B, 0x0F, 0xFF, 0xFF}), Bytes(5));
-  EXPECT_EQ(rig.read(0x2B, 2), (Bytes{0x0F, 0x00}));
+  EXPECT_EQ(rig.spi({0x05, 0x2B, 0x0F, 0xFF, 0x00}), Bytes(5));
+  EXPECT_EQ(rig.read(0x2B, 2), (Bytes{0x0F, 0x00})) << "neither again nor in the next register";
 }
 
 TEST(Mcp2515Spi, InstructionsCutShortDoNothing) {
@@ -236,6 +236,16 @@ TEST(Mcp2515Spi, RequestToSendSetsTxreqOfTheBuffersItNames) {
   }
 }
 
+TEST(Mcp2515Spi, AResetTakesBackWhatWaitsForChipSelect) {
+  ChipRig rig;
+  rig.chip.select();
+  rig.chip.exchange(0x81);
+  rig.chip.reset_pin();
+  rig.chip.deselect();
+  rig.run_bits(10);
+  EXPECT_EQ(rig.read(0x30), 0x00);
+}
+
 // --- READ STATUS (figure 12-8) -------------------------------------------------------------------
 
 TEST(Mcp2515Spi, ReadStatusShowsEightBits) {
@@ -280,7 +290,6 @@ TEST(Mcp2515Spi, ReadStatusGoesOnAsLongAsItIsClocked) {
 TEST(Mcp2515Spi, RxStatusShowsBufferKindAndFilter) {
   struct Row {
     const char* why;
-    std::uint8_t rxb0ctrl;
     std::vector<Frame> frames;
     int status;
   };
@@ -291,22 +300,22 @@ TEST(Mcp2515Spi, RxStatusShowsBufferKindAndFilter) {
   const Frame filter4{0x104 << 18, FrameKind::extended, 0, {}};
   const Frame filter5{0x105 << 18, FrameKind::extended_remote, 0, {}};
   const Row rows[] = {
-      {"no message", 0x00, {}, 0x00},
-      {"RXB0 by RXF0, standard data", 0x00, {filter0}, 0x40},
-      {"RXB0 by RXF1", 0x00, {filter1}, 0x41},
-      {"RXB1 by RXF2", 0x00, {filter2}, 0x82},
-      {"RXB1 by RXF3, standard remote", 0x00, {filter3}, 0x8B},
-      {"RXB1 by RXF4, extended data", 0x00, {filter4}, 0x94},
-      {"RXB1 by RXF5, extended remote", 0x00, {filter5}, 0x9D},
-      {"both: RXB0 is the one described", 0x00, {filter5, filter1}, 0xC1},
-      {"no filter takes it", 0x00, {{0x106, FrameKind::standard, 0, {}}}, 0x00},
+      {"no message", {}, 0x00},
+      {"RXB0 by RXF0, standard data", {filter0}, 0x40},
+      {"RXB0 by RXF1", {filter1}, 0x41},
+      {"RXB1 by RXF2", {filter2}, 0x82},
+      {"RXB1 by RXF3, standard remote", {filter3}, 0x8B},
+      {"RXB1 by RXF4, extended data", {filter4}, 0x94},
+      {"RXB1 by RXF5, extended remote", {filter5}, 0x9D},
+      {"both: RXB0 is the one described", {filter5, filter1}, 0xC1},
+      {"no filter takes it", {{0x106, FrameKind::standard, 0, {}}}, 0x00},
   };
   for (const Row& row : rows) {
     ChipRig rig;
     rig.write(0x20, Bytes{0xFF, 0xE0, 0x00, 0x00, 0xFF, 0xE0, 0x00, 0x00});
     rig.write(0x00, Bytes{0x20, 0x00, 0x00, 0x00, 0x20, 0x20, 0x00, 0x00, 0x20, 0x40, 0x00, 0x00});
     rig.write(0x10, Bytes{0x20, 0x60, 0x00, 0x00, 0x20, 0x88, 0x00, 0x00, 0x20, 0xA8, 0x00, 0x00});
-    rig.go(0x00, row.rxb0ctrl, 0x00);
+    rig.go(0x00, 0x00, 0x00);
     for (const Frame& frame : row.frames) {
       rig.peer_sends(frame);
     }

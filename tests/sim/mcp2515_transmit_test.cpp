@@ -168,6 +168,8 @@ TEST(Mcp2515Transmit, AnUnacknowledgedFrameIsRepeatedForEver) {
   EXPECT_EQ(rig.read(0x30), 0x18) << "TXERR, and still requested";
   EXPECT_EQ(rig.read(0x2C), 0x80) << "MERRF";
   EXPECT_EQ(rig.read(0x1C), 8);
+  rig.request_to_send(1);
+  EXPECT_EQ(rig.read(0x30), 0x18) << "asking again changes nothing";
   rig.bus.run_for(std::chrono::milliseconds(50));
   EXPECT_EQ(rig.read(0x1C), 128) << "a lone node never goes bus-off";
   EXPECT_EQ(rig.read(0x30), 0x18);

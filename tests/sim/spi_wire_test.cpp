@@ -98,6 +98,48 @@ TEST(SpiWire, UnpluggedInTheMiddleTheRestIsLost) {
   EXPECT_EQ(rig.chip.peek(0x29), 0x00);
 }
 
+TEST(SpiWire, ForTheChipUnpluggingRaisesChipSelect) {
+  WireRig rig;
+  rig.wire.select();
+  rig.wire.exchange(0x81);
+  EXPECT_EQ(rig.chip.peek(0x30), 0x00);
+  rig.wire.set_fault(SpiWire::Fault::stuck_high);
+  EXPECT_EQ(rig.chip.peek(0x30), 0x08);
+  rig.wire.deselect();
+}
+
+TEST(SpiWire, PluggedInInTheMiddleTheChipHearsTheRest) {
+  WireRig rig;
+  rig.wire.set_fault(SpiWire::Fault::stuck_low);
+  rig.wire.select();
+  EXPECT_EQ(rig.wire.exchange(0x02), 0x00);
+  rig.wire.set_fault(SpiWire::Fault::none);
+  for (const std::uint8_t byte : Bytes{0x03, 0x0F}) {
+    rig.wire.exchange(byte);
+  }
+  EXPECT_EQ(rig.wire.exchange(0x00), 0x87) << "taken for an instruction";
+  rig.wire.deselect();
+}
+
+TEST(SpiWire, TheInterruptLineMaySpike) {
+  WireRig rig;
+  EXPECT_FALSE(rig.wire.interrupt_line_is_low());
+  rig.wire.spike_on_interrupt_line();
+  EXPECT_TRUE(rig.wire.interrupt_line_is_low());
+  EXPECT_FALSE(rig.wire.interrupt_line_is_low()) << "for one look";
+}
+
+TEST(SpiWire, FaultsCanBeCleared) {
+  WireRig rig;
+  rig.wire.set_fault(SpiWire::Fault::stuck_high);
+  rig.wire.set_bit_flips(1, 1);
+  rig.wire.lose_select_after(1);
+  rig.wire.spike_on_interrupt_line();
+  rig.wire.clear_faults();
+  EXPECT_FALSE(rig.wire.interrupt_line_is_low());
+  EXPECT_EQ(rig.transfer({0x03, 0x0F, 0x00}), (Bytes{0x00, 0x00, 0x87}));
+}
+
 TEST(SpiWire, LosesSelectOnceWhereItWasTold) {
   struct Row {
     std::uint32_t after;

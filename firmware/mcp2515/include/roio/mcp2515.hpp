@@ -190,7 +190,7 @@ class Mcp2515 {
 
   /// How many frames are in the chip to be sent, as far as was last seen.
   uint8_t in_flight() const {
-    return static_cast<uint8_t>((pending_ & 1U) + ((pending_ >> 1) & 1U) + ((pending_ >> 2) & 1U));
+    return static_cast<uint8_t>(((pending_ >> 2) & 1U) + ((pending_ >> 4) & 1U) + (pending_ >> 6));
   }
   /// How many wait for the chip.
   uint8_t waiting() const { return tx_queue_.size(); }
@@ -229,8 +229,10 @@ class Mcp2515 {
   static constexpr uint8_t urgent_level = 3;
   static constexpr uint8_t highest_normal_level = 2;
 
+  /// Bit 28, in the byte where an AVR finds it at once.
   static bool is_urgent(const Frame& frame) {
-    return is_extended(frame.kind) && (frame.id & PriorityField::mask()) == 0;
+    return (!Traits::all_kinds || is_extended(frame.kind)) &&
+           (static_cast<uint8_t>(frame.id >> 24) & 0x10U) == 0;
   }
   bool is_sendable(const Frame& frame) const {
     return is_valid(frame) && frame.kind != FrameKind::error &&
@@ -262,11 +264,11 @@ class Mcp2515 {
   static void read_frame(Transaction& transaction, uint8_t buffer, Frame& frame);
 
   // sending
-  bool give_to_chip(const Waiting& entry);
-  Status enqueue(const Waiting& entry);
+  bool give_to_chip(const Frame& frame, uint8_t token);
+  Status enqueue(const Frame& frame, uint8_t token);
   void pump();
   uint8_t choose_slot(bool urgent, uint8_t& level) const;
-  bool load(const Waiting& entry);
+  bool load(const Frame& frame, uint8_t token);
   void settle(uint8_t quick);
   TxOutcome outcome_of(uint8_t slot);
   void report(uint8_t token, TxOutcome outcome);
@@ -289,7 +291,7 @@ class Mcp2515 {
   bool check_due_;     // frames may have been lost, or the interrupt line tells of an error
   bool rx1_is_older_;  // of two full receive buffers
   bool aborting_;
-  uint8_t pending_;      // one bit for each transmit buffer that the chip was asked to send
+  uint8_t pending_;      // what the chip was asked to send, bit for bit TXREQ in READ STATUS
   uint8_t level_;        // TXP of the normal frame given to the chip last
   uint8_t priority_[3];  // TXP as written
   uint8_t token_[3];

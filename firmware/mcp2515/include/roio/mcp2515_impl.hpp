@@ -240,9 +240,7 @@ ROIO_MCP2515_MEMBER(Status)::check_clock(const Mcp2515Config& config, uint32_t o
 /// The three TXnIF are set, and the chip sends nothing but what it was told to. A chip that was
 /// reset, and lines stuck at 0 or 1, look different.
 ROIO_MCP2515_MEMBER(bool)::is_plausible(uint8_t quick) const {
-  const uint8_t ours = static_cast<uint8_t>(((pending_ & 1U) << 2) | ((pending_ & 2U) << 3) |
-                                            ((pending_ & 4U) << 4));
-  return (quick & ~(QuickStatus::any_rx | ours)) == QuickStatus::txif;
+  return (quick & static_cast<uint8_t>(~(QuickStatus::any_rx | pending_))) == QuickStatus::txif;
 }
 
 ROIO_MCP2515_MEMBER(void)::note(uint8_t quick) {
@@ -400,35 +398,34 @@ ROIO_MCP2515_MEMBER(Status)::send(const Frame& frame, uint8_t token) {
   if (!running_) {
     return Status::no_chip;
   }
-  const Waiting entry = {frame, token};
-  if (!give_to_chip(entry)) {
+  if (!give_to_chip(frame, token)) {
     // Only the chip knows whether it has room by now.
     note(read_quick_status());
     pump();
     if (!running_) {
       return Status::no_chip;
     }
-    if (!give_to_chip(entry)) {
-      return enqueue(entry);
+    if (!give_to_chip(frame, token)) {
+      return enqueue(frame, token);
     }
   }
   return Status::ok;
 }
 
 /// Whether no frame waits that has to go first, and the chip has room; then it is there.
-ROIO_MCP2515_MEMBER(bool)::give_to_chip(const Waiting& entry) {
-  const bool urgent = is_urgent(entry.frame);
-  const bool goes_next = tx_queue_.empty() || (urgent && !is_urgent(tx_queue_.front().frame));
-  return goes_next && load(entry);
+ROIO_MCP2515_MEMBER(bool)::give_to_chip(const Frame& frame, uint8_t token) {
+  const bool goes_next =
+      tx_queue_.empty() || (is_urgent(frame) && !is_urgent(tx_queue_.front().frame));
+  return goes_next && load(frame, token);
 }
 
-ROIO_MCP2515_MEMBER(Status)::enqueue(const Waiting& entry) {
+ROIO_MCP2515_MEMBER(Status)::enqueue(const Frame& frame, uint8_t token) {
   if (tx_queue_.full() || aborting_) {
     return Status::full;
   }
   uint8_t place = tx_queue_.size();
   tx_queue_.commit();
-  if (is_urgent(entry.frame)) {
+  if (is_urgent(frame)) {
     while (place > 0) {
       const uint8_t ahead = static_cast<uint8_t>(place - 1U);
       if (is_urgent(tx_queue_[ahead].frame)) {
@@ -438,12 +435,13 @@ ROIO_MCP2515_MEMBER(Status)::enqueue(const Waiting& entry) {
       place = ahead;
     }
   }
-  tx_queue_[place] = entry;
+  tx_queue_[place].frame = frame;
+  tx_queue_[place].token = token;
   return Status::ok;
 }
 
 ROIO_MCP2515_MEMBER(void)::pump() {
-  while (!tx_queue_.empty() && load(tx_queue_.front())) {
+  while (!tx_queue_.empty() && load(tx_queue_.front().frame, tx_queue_.front().token)) {
     tx_queue_.pop();
   }
 }
@@ -456,34 +454,29 @@ ROIO_MCP2515_MEMBER(void)::pump() {
 /// has TXP 3, above all of these, and takes no normal frame: so an urgent one never waits for a
 /// normal one to win the bus.
 ROIO_MCP2515_MEMBER(uint8_t)::choose_slot(bool urgent, uint8_t& level) const {
-  const uint8_t normal = pending_ & 0x06U;
   if (urgent || Traits::only_buffer_0) {
     level = urgent_level;
-    return (pending_ & 0x01U) == 0 ? urgent_slot : mcp2515::no_slot;
+    return (pending_ & QuickStatus::txreq(0)) == 0 ? urgent_slot : mcp2515::no_slot;
   }
-  switch (normal) {
-    case 0:
-      level = highest_normal_level;
-      return 2;
-    case 0x04:
-      level = level_;
-      return 1;
-    case 0x02:
-      level = static_cast<uint8_t>(level_ - 1U);
-      return level_ > 0 ? 2 : mcp2515::no_slot;
-    default:
-      return mcp2515::no_slot;
+  const bool in_1 = (pending_ & QuickStatus::txreq(1)) != 0;
+  const bool in_2 = (pending_ & QuickStatus::txreq(2)) != 0;
+  level = in_1 || in_2 ? level_ : highest_normal_level;
+  if (!in_1) {
+    return in_2 ? 1 : 2;
   }
+  if (in_2 || level == 0) {
+    return mcp2515::no_slot;
+  }
+  --level;
+  return 2;
 }
 
-ROIO_MCP2515_MEMBER(bool)::load(const Waiting& entry) {
+ROIO_MCP2515_MEMBER(bool)::load(const Frame& frame, uint8_t token) {
   uint8_t level = 0;
-  const bool urgent = is_urgent(entry.frame);
-  const uint8_t slot = aborting_ ? mcp2515::no_slot : choose_slot(urgent, level);
+  const uint8_t slot = aborting_ ? mcp2515::no_slot : choose_slot(is_urgent(frame), level);
   if (slot == mcp2515::no_slot) {
     return false;
   }
-  const Frame& frame = entry.frame;
   const bool extended = !Traits::all_kinds || is_extended(frame.kind);
   uint8_t id[4];
   to_mcp2515_registers(extended ? frame.id : frame.id << mcp2515::standard_id_shift, id);
@@ -511,8 +504,8 @@ ROIO_MCP2515_MEMBER(bool)::load(const Waiting& entry) {
     transaction.restart();
     transaction.exchange(mcp2515::request_to_send(slot));
   }
-  pending_ |= static_cast<uint8_t>(1U << slot);
-  token_[slot] = entry.token;
+  pending_ |= QuickStatus::txreq(slot);
+  token_[slot] = token;
   if (slot != urgent_slot) {
     level_ = level;
   }
@@ -521,10 +514,11 @@ ROIO_MCP2515_MEMBER(bool)::load(const Waiting& entry) {
 
 /// Finds the transmissions that have come to their end.
 ROIO_MCP2515_MEMBER(void)::settle(uint8_t quick) {
-  for (uint8_t slot = 0; slot < 3; ++slot) {
-    const uint8_t bit = static_cast<uint8_t>(1U << slot);
-    if ((pending_ & bit) != 0 && (quick & QuickStatus::txreq(slot)) == 0) {
-      pending_ &= static_cast<uint8_t>(~bit);
+  const uint8_t ended = static_cast<uint8_t>(pending_ & ~quick);
+  pending_ &= quick;
+  uint8_t bit = QuickStatus::txreq(0);
+  for (uint8_t slot = 0; ended != 0 && slot < 3; ++slot, bit = static_cast<uint8_t>(bit << 2)) {
+    if ((ended & bit) != 0) {
       report(token_[slot], outcome_of(slot));
     }
   }
@@ -638,8 +632,9 @@ ROIO_MCP2515_MEMBER(void)::forget_chip() {
   aborting_ = false;
   check_due_ = false;
   error_flags_ = 0;
-  for (uint8_t slot = 0; slot < 3; ++slot) {
-    if ((pending_ & (1U << slot)) != 0) {
+  uint8_t bit = QuickStatus::txreq(0);
+  for (uint8_t slot = 0; slot < 3; ++slot, bit = static_cast<uint8_t>(bit << 2)) {
+    if ((pending_ & bit) != 0) {
       report(token_[slot], TxOutcome::unknown);
     }
   }

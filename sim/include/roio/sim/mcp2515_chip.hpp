@@ -113,7 +113,7 @@ class Mcp2515Chip : private ControllerClient {
   void write_register(std::uint8_t address, std::uint8_t value, std::uint8_t mask = 0xFF);
   void register_written(std::uint8_t address, std::uint8_t before);
   void modify_register(std::uint8_t address, std::uint8_t value, std::uint8_t mask);
-  void control_written(std::uint8_t before);
+  void control_written();
   void transmit_control_written(int buffer, std::uint8_t before);
   void receive_control_written(std::uint8_t address);
   [[nodiscard]] std::uint8_t status_register() const;
@@ -162,6 +162,9 @@ class Mcp2515Chip : private ControllerClient {
 
   // reception
   void assemble(const Frame& frame);
+  void offer_to_rxb0(const Frame& frame, int filter);
+  void offer_to_rxb1(const Frame& frame, int filter, std::uint8_t overflow_flag);
+  [[nodiscard]] bool is_full(int buffer) const;
   void store(const Frame& frame, int buffer, int filter);
   void overflow(std::uint8_t flag);
   [[nodiscard]] int matching_filter(const Frame& frame, int buffer) const;
