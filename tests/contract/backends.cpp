@@ -4,13 +4,35 @@
 
 #include <atomic>
 #include <cstdlib>
+#include <memory>
+#include <roio/sim/network.hpp>
+#include <utility>
 
 namespace roio::test {
 namespace {
 
-std::string fresh_local_name() {
+std::string fresh_name() {
   static std::atomic<int> count{0};
-  return "local:contract-" + std::to_string(::getpid()) + "-" + std::to_string(++count);
+  return "contract-" + std::to_string(::getpid()) + "-" + std::to_string(++count);
+}
+
+/// A bus that is found by its URL.
+Venue by_url(const std::string& url) {
+  return {url, [url](const OpenOptions& options) { return open(url, options); }};
+}
+
+Venue fresh_local(const std::string& options = "") {
+  return by_url("local:" + fresh_name() + options);
+}
+
+/// A simulated wire with a simulated MCP2515 for each participant, and the driver on it. A further
+/// node acknowledges and sends nothing, so that a participant that is alone gets rid of its frames,
+/// as it does on a local bus.
+Venue fresh_chips() {
+  const std::string name = "sim:" + fresh_name();
+  const auto network = std::make_shared<sim::Network>(
+      sim::NetworkOptions{.name = name, .bitrate_bps = 500'000, .witness = true});
+  return {name, [network](const OpenOptions& options) { return network->join(options); }};
 }
 
 }  // namespace
@@ -18,20 +40,26 @@ std::string fresh_local_name() {
 std::vector<Backend> backends() {
   std::vector<Backend> all;
   all.push_back({.name = "local",
-                 .fresh_url = fresh_local_name,
+                 .fresh = [] { return fresh_local(); },
                  .arbitrates = false,
                  .paced = false,
                  .one_order = true,
                  .flood = 80'000});
   all.push_back({.name = "local_500k",
-                 .fresh_url = [] { return fresh_local_name() + "?bitrate=500000"; },
+                 .fresh = [] { return fresh_local("?bitrate=500000"); },
                  .arbitrates = true,
                  .paced = true,
                  .one_order = true,
                  .flood = 3'000});
+  all.push_back({.name = "simulated_chips",
+                 .fresh = fresh_chips,
+                 .arbitrates = true,
+                 .paced = true,
+                 .one_order = true,
+                 .flood = 5'000});
   if (const char* const interface_name = std::getenv("ROIO_TEST_CAN")) {
     all.push_back({.name = "socketcan",
-                   .fresh_url = [name = std::string(interface_name)] { return name; },
+                   .fresh = [name = std::string(interface_name)] { return by_url(name); },
                    .arbitrates = false,
                    .paced = false,
                    .one_order = false,

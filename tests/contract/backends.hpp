@@ -5,16 +5,24 @@
 
 #include <cstddef>
 #include <functional>
+#include <memory>
 #include <ostream>
+#include <roio/bus.hpp>
 #include <string>
 #include <vector>
 
 namespace roio::test {
 
+/// One bus. Participants come by join(), and are gone before it is.
+struct Venue {
+  std::string url;  ///< Bus::name() of all participants, and options after a '?'.
+  std::function<std::unique_ptr<Bus>(const OpenOptions&)> join;
+};
+
 struct Backend {
   std::string name;
-  /// A URL of a bus that nobody else uses; the same bus each time only where there is but one.
-  std::function<std::string()> fresh_url;
+  /// A bus that nobody else uses; the same bus each time only where there is but one.
+  std::function<Venue()> fresh;
   bool arbitrates;        ///< Urgent frames pass normal ones that still wait.
   bool paced;             ///< Frames take their time, so that a queue fills and send() waits.
   bool one_order;         ///< All receivers see one and the same order.
@@ -25,8 +33,9 @@ inline std::ostream& operator<<(std::ostream& out, const Backend& backend) {
   return out << backend.name;
 }
 
-/// The local bus always; SocketCAN on the interface that the environment variable ROIO_TEST_CAN
-/// names, when it is set (that one bus is then every test's: run them one at a time).
+/// The local bus and the simulated chips always; SocketCAN on the interface that the environment
+/// variable ROIO_TEST_CAN names, when it is set (that one bus is then every test's: run them one at
+/// a time).
 std::vector<Backend> backends();
 /// Those of them that have a trait.
 std::vector<Backend> backends_where(bool Backend::*trait);

@@ -63,16 +63,16 @@ T result_of(std::future<T>& future) {
 
 class Contract : public testing::TestWithParam<Backend> {
  protected:
-  Contract() : url_(GetParam().fresh_url()) {}
+  Contract() : venue_(GetParam().fresh()) {}
 
   /// One more participant of this test's bus.
   [[nodiscard]] std::unique_ptr<Bus> join(const OpenOptions& options = {}) const {
-    return open(url_, options);
+    return venue_.join(options);
   }
-  [[nodiscard]] const std::string& url() const { return url_; }
+  [[nodiscard]] const std::string& url() const { return venue_.url; }
 
  private:
-  std::string url_;
+  Venue venue_;
 };
 
 inline std::string backend_name(const testing::TestParamInfo<Backend>& info) {

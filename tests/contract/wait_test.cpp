@@ -217,15 +217,17 @@ TEST_P(Waits, OneThreadMaySendWhileAnotherReceives) {
   constexpr std::uint32_t count = 500;
   const auto a = join();
   const auto b = join();
-  const auto exchange = [](Bus& bus) {
-    return in_thread([&bus] {
+  // Each has an identifier of its own, as CAN asks of senders: of equal frames that start together,
+  // a wire makes one.
+  const auto exchange = [](Bus& bus, std::uint32_t id) {
+    return in_thread([&bus, id] {
       for (std::uint32_t i = 0; i < count; ++i) {
-        EXPECT_EQ(bus.send(numbered(i), guard), Result::ok);
+        EXPECT_EQ(bus.send(numbered(i, id), guard), Result::ok);
       }
     });
   };
-  auto from_a = exchange(*a);
-  auto from_b = exchange(*b);
+  auto from_a = exchange(*a, 0x1000400A);
+  auto from_b = exchange(*b, 0x1000400B);
   auto at_a = in_thread([&] { return receive_exactly(*a, count).size(); });
   auto at_b = in_thread([&] { return receive_exactly(*b, count).size(); });
   EXPECT_EQ(result_of(at_a), count);

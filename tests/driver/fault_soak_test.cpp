@@ -44,7 +44,7 @@ template <bool WithLine>
 class Soak {
  public:
   explicit Soak(std::mt19937& generator) : generator_(generator) {
-    rig_.chip.on_sent([this](const Frame& frame) { chip_sent_.push_back(frame); });
+    rig_.chip.on_sent([this](const Frame& frame) { check_sent(frame); });
     rig_.wire.on_step([this] { at_step(); });
   }
 
@@ -62,32 +62,17 @@ class Soak {
 
   void check() const {
     const auto& counters = rig_.can.counters();
-    // Received: what the chip accepted, in its order, less what a lost chip took with it.
-    std::size_t at = 0;
-    for (const Frame& frame : received_) {
-      while (at < rig_.accepted.size() && !(rig_.accepted[at] == frame)) {
-        ++at;
-      }
-      ASSERT_LT(at, rig_.accepted.size())
-          << "handed out, and not accepted at that place: " << frame;
-      ++at;
-    }
-    const std::size_t missing = rig_.accepted.size() - received_.size();
+    const std::size_t missing = rig_.accepted.size() - received_;
     EXPECT_LE(missing, 2 * begins_) << "two frames for each time that the chip was set up again";
-    EXPECT_EQ(counters.received, received_.size());
+    EXPECT_EQ(counters.received, received_);
     // Sent: each frame once, and told so, or not known.
     EXPECT_EQ(counters.sent + counters.not_sent + counters.unknown, submitted_);
     EXPECT_EQ(counters.not_sent, 0U);
-    std::set<std::uint32_t> on_wire;
-    for (const Frame& frame : chip_sent_) {
-      EXPECT_EQ(frame, checked(number_of(frame), frame.id)) << "a wrong frame was sent";
-      EXPECT_TRUE(on_wire.insert(number_of(frame)).second) << "sent twice: " << number_of(frame);
-    }
-    EXPECT_LE(counters.sent, on_wire.size()) << "told as sent, and was not";
-    EXPECT_LE(on_wire.size(), counters.sent + counters.unknown);
+    EXPECT_LE(counters.sent, on_wire_.size()) << "told as sent, and was not";
+    EXPECT_LE(on_wire_.size(), counters.sent + counters.unknown);
     EXPECT_GT(counters.chip_losses, 0U);
-    EXPECT_GT(received_.size(), 100U);
-    std::cout << received_.size() << " received, " << missing << " lost with the chip, "
+    EXPECT_GT(received_, 100U);
+    std::cout << received_ << " received, " << missing << " lost with the chip, "
               << rig_.chip.events().overflowed << " overflowed, " << counters.sent << " sent, "
               << counters.unknown << " unknown, " << counters.chip_losses << " chip losses, "
               << resets_ << " resets, " << unplugged_ << " times unplugged, "
@@ -151,8 +136,27 @@ class Soak {
     }
     static_cast<void>(rig_.can.poll());
     for (const Frame& frame : rig_.receive_all()) {
-      received_.push_back(frame);
+      check_received(frame);
     }
+  }
+
+  /// What the chip accepted, in its order, less what a lost chip took with it.
+  void check_received(const Frame& frame) {
+    ++received_;
+    const std::size_t from = place_;
+    while (place_ < rig_.accepted.size() && !(rig_.accepted[place_] == frame)) {
+      ++place_;
+    }
+    ASSERT_LT(place_, rig_.accepted.size())
+        << "handed out, and not accepted after the frame before it: " << frame << ", where " << from
+        << " is expected";
+    ++place_;
+  }
+
+  /// Each frame once, and none that nobody gave.
+  void check_sent(const Frame& frame) {
+    EXPECT_EQ(frame, checked(number_of(frame), frame.id)) << "a wrong frame was sent";
+    EXPECT_TRUE(on_wire_.insert(number_of(frame)).second) << "sent twice: " << number_of(frame);
   }
 
   void calm_down() {
@@ -174,8 +178,9 @@ class Soak {
 
   std::mt19937& generator_;
   Rig<WithLine, 4, 8> rig_;
-  std::vector<Frame> received_;
-  std::vector<Frame> chip_sent_;
+  std::size_t received_ = 0;
+  std::size_t place_ = 0;  // in what the chip accepted
+  std::set<std::uint32_t> on_wire_;
   std::uint32_t peer_number_ = 0;
   std::uint32_t submitted_ = 0;
   std::uint64_t begins_ = 0;
