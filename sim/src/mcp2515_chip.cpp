@@ -74,6 +74,10 @@ void Mcp2515Chip::start(bool power_on) {
   on_wire_ = -1;
   mode_ = OperationMode::configuration;
   entering_.reset();
+  // What is left of the SPI instruction goes nowhere: the chip listens again when chip select
+  // falls.
+  selected_ = false;
+  instruction_ = {};
   reset_registers(power_on);
   update_pins();
   start_oscillator(power_on ? options_.crystal_start : SimTime(0));

@@ -13,9 +13,7 @@ constexpr SpiWire::Timing no_time{SimTime(0), SimTime(0)};
 constexpr int bits_of_any_frame = 200;
 
 Mcp2515Config config_of(const BitTiming& timing) {
-  Mcp2515Filters all{};  // masks of no bits
-  all.in_order = true;
-  Mcp2515Config config(timing, all);
+  Mcp2515Config config(timing, Mcp2515Filters{});
   config.everything = true;
   return config;
 }

@@ -138,6 +138,18 @@ TEST(Begin, RefusesFiltersThatCannotKeepTheOrder) {
   EXPECT_EQ(rig.can.begin({plain_config().timing, fit_mcp2515_in_order(program)}), Status::ok);
 }
 
+struct AllKinds : TestTraits {
+  static constexpr bool all_kinds = true;
+};
+
+TEST(Begin, AsksForNoFiltersWhenEverythingIsWanted) {
+  Rig<false, 0, 0, AllKinds> rig;
+  Mcp2515Config config(plain_config().timing, Mcp2515Filters{});
+  EXPECT_EQ(rig.can.begin(config), Status::bad_argument);
+  config.everything = true;
+  EXPECT_EQ(rig.can.begin(config), Status::ok);
+}
+
 TEST(Begin, WaitsForAChipThatStartsSlowly) {
   for (const int start_ms : {1, 5, 15}) {
     sim::CanBus bus;

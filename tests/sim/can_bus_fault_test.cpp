@@ -337,7 +337,7 @@ TEST(CutTransmitter, GoesBusOffAndDisturbsNobody) {
   Station sender(bus);
   Station receiver(bus);
   bus.run_for(milliseconds(1));
-  CanBus::cut_transmitter(cut.node.controller(), true);
+  cut.node.controller().cut_transmitter(true);
   cut.node.send(first);
   bus.run_for(bit * 33);
   EXPECT_EQ(cut.confinement(), Confinement::passive);
@@ -348,7 +348,7 @@ TEST(CutTransmitter, GoesBusOffAndDisturbsNobody) {
   EXPECT_EQ(receiver.received, Texts{text_of(second)});
   EXPECT_EQ(sender.transmit_errors() + receiver.receive_errors(), 0U);
 
-  CanBus::cut_transmitter(cut.node.controller(), false);
+  cut.node.controller().cut_transmitter(false);
   bus.run_for(bit * 128 * 11 + milliseconds(1));
   EXPECT_EQ(receiver.received, (Texts{text_of(second), text_of(first)}));
 }
@@ -357,7 +357,7 @@ TEST(CutTransmitter, StaysCutWhenTheNodeJoinsAgain) {
   CanBus bus;
   Station cut(bus);
   Station receiver(bus);
-  CanBus::cut_transmitter(cut.node.controller(), true);
+  cut.node.controller().cut_transmitter(true);
   bus.leave(cut.node.controller());
   bus.join(cut.node.controller(), timing_of(rate));
   cut.node.send(first);
@@ -370,7 +370,7 @@ TEST(CutTransmitter, TheOnlyReceiverCannotAcknowledge) {
   Station cut(bus);
   Station sender(bus);
   bus.run_for(milliseconds(1));
-  CanBus::cut_transmitter(cut.node.controller(), true);
+  cut.node.controller().cut_transmitter(true);
   sender.node.send(first);
   bus.run_for(milliseconds(50));
   EXPECT_EQ(sender.sent, Texts{});

@@ -559,7 +559,7 @@ TEST(CanBus, AStartOfFrameAtAnyMomentSynchronisesNodesOfOtherRates) {
   Station cut(bus);
   bus.run_for(milliseconds(1));
   // While this one is bus-off, bits are counted, and time does not stand still between frames.
-  CanBus::cut_transmitter(cut.node.controller(), true);
+  cut.node.controller().cut_transmitter(true);
   cut.node.send(document_frame);
   bus.run_for(milliseconds(1));
   ASSERT_EQ(cut.confinement(), Confinement::bus_off);

@@ -159,7 +159,7 @@ ROIO_MCP2515_MEMBER(Status)::begin(const Mcp2515Config& config) {
   if (!is_valid(config.timing)) {
     return Status::bad_timing;
   }
-  if (!config.filters.in_order || (config.everything && !Traits::all_kinds)) {
+  if (config.everything ? !Traits::all_kinds : !config.filters.in_order) {
     return Status::bad_argument;
   }
   forget_chip();

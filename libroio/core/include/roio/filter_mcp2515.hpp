@@ -346,7 +346,7 @@ Mcp2515Filters fit_mcp2515_in_order(const FilterProgram<Capacity>& program) {
     }
   }
   uint8_t other = 0;
-  while (best != 0 && ((best >> other) & 1U) == 0) {
+  while (best != 0 && ((static_cast<unsigned>(best) >> other) & 1U) == 0) {
     ++other;
   }
   Mcp2515Filters image;

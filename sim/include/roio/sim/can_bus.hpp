@@ -90,8 +90,6 @@ class CanBus : private Controller::Monitor {
   void hold_dominant(bool hold) { held_ = hold; }
   /// Flips one bit, the next that is sampled, for all nodes of a rate (for one, when given).
   void flip_next_bit(Controller* victim = nullptr);
-  /// The node's transmitter is cut off from the wire: it still hears.
-  static void cut_transmitter(Controller& controller, bool cut) { controller.cut_transmitter(cut); }
 
   // --- what happens ------------------------------------------------------------------------------
 

@@ -93,7 +93,7 @@ class Controller {
   /// @param monitor null: nobody.
   void set_monitor(Monitor* monitor) { monitor_ = monitor; }
 
-  /// The transmitter is cut off from the wire: what the node drives does not get there.
+  /// A fault: the transmitter is cut off from the wire, which the node still hears.
   void cut_transmitter(bool cut) { cut_ = cut; }
 
   /// Tells that next_submission() may have something.
