@@ -33,8 +33,7 @@ BitTiming checked_timing(const NetworkOptions& options) {
 
 }  // namespace
 
-// --- pace
-// -----------------------------------------------------------------------------------------------------
+// --- pace ----------------------------------------------------------------------------------------
 
 SimTime Pace::due() const {
   const std::chrono::duration<double, std::pico> real = Clock::now() - start_;
@@ -46,8 +45,7 @@ Pace::Clock::time_point Pace::real(SimTime time) const {
   return start_ + std::chrono::ceil<Clock::duration>(real);
 }
 
-// --- from any thread
-// ------------------------------------------------------------------------------------------
+// --- from any thread -----------------------------------------------------------------------------
 
 NetworkCore::NetworkCore(const NetworkOptions& options)
     : options_(options),
@@ -101,8 +99,7 @@ void NetworkCore::wake() {
   changed_.notify_all();
 }
 
-// --- the simulation's thread
-// ----------------------------------------------------------------------------------
+// --- the simulation's thread ---------------------------------------------------------------------
 
 Station* NetworkCore::add(const std::shared_ptr<Exchange>& exchange) {
   auto station = std::make_unique<Station>(bus_, options_, timing_, epoch_, exchange);

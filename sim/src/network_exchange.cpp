@@ -23,8 +23,7 @@ Exchange::Exchange(const OpenOptions& options) : error_frames_(options.error_fra
   }
 }
 
-// --- the program's side
-// --------------------------------------------------------------------------------------
+// --- the program's side --------------------------------------------------------------------------
 
 Exchange::Offered Exchange::offer(std::span<const Frame> frames, SimTime since) {
   const std::lock_guard lock(mutex_);
@@ -95,8 +94,7 @@ void Exchange::close(std::chrono::nanoseconds patience) {
   settled_.wait_for(lock, patience, [this] { return all_settled(); });
 }
 
-// --- the simulation's side
-// -----------------------------------------------------------------------------------
+// --- the simulation's side -----------------------------------------------------------------------
 
 bool Exchange::all_settled() const {
   return in_chip_ == 0 && lanes_[urgent_lane].empty() && lanes_[normal_lane].empty();

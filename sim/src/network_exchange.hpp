@@ -28,8 +28,7 @@ class Exchange {
 
   explicit Exchange(const OpenOptions& options);
 
-  // --- the program's side
-  // ------------------------------------------------------------------------------------
+  // --- the program's side ------------------------------------------------------------------------
 
   struct Offered {
     std::size_t count;  ///< The first so many were accepted.
@@ -52,8 +51,7 @@ class Exchange {
   /// Accepts and delivers nothing from now on, and waits until what was accepted has been sent.
   void close(std::chrono::nanoseconds patience);
 
-  // --- the simulation's side
-  // ---------------------------------------------------------------------------------
+  // --- the simulation's side ---------------------------------------------------------------------
 
   [[nodiscard]] bool has_work() const;
   /// The lane's first frame, if it has one at that time. It stays until it is handed over.

@@ -1,4 +1,5 @@
-// The whole driver, every member of it, for an AVR: the test looks at what the object file asks for.
+// The whole driver, every member of it, for an AVR: the test looks at what the object file asks
+// for.
 #include <roio/mcp2515.hpp>
 
 // Of external linkage, or the compiler would leave all of it out.
