@@ -106,6 +106,25 @@ TEST(Begin, WithoutAChipSaysSoInTime) {
   }
 }
 
+TEST(Begin, NoticesAWriteThatDidNotArrive) {
+  // Chip select is lost at each byte in turn of what sets up a chip that is there.
+  Rig<> whole;
+  whole.mark();
+  ASSERT_EQ(whole.can.begin(plain_config()), Status::ok);
+  const auto bytes = static_cast<std::uint32_t>(whole.spent().first);
+  int noticed = 0;
+  for (std::uint32_t byte = 0; byte < bytes; ++byte) {
+    Rig<> rig;
+    rig.wire.lose_select_after(byte);
+    const Status status = rig.can.begin(plain_config());
+    noticed += status == Status::no_chip ? 1 : 0;
+    if (status == Status::ok) {
+      ASSERT_EQ(setup_of(rig.chip), setup_of(whole.chip)) << byte;
+    }
+  }
+  EXPECT_GT(noticed, 40);
+}
+
 TEST(Begin, RefusesAnImpossibleTimingWithoutTouchingTheChip) {
   Rig<> rig;
   rig.begin();

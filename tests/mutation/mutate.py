@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Takes one rule of the driver's ordering away, and sees tests/driver fail.
+"""Takes one rule of the driver away, and sees tests/driver fail.
 
   mutate.py --list          the names of the mutations
   mutate.py NAME            compiles the tests against the driver without that rule, and runs them
@@ -19,6 +19,8 @@ import sys
 
 RECEIVE = "receive_order_test.cpp"
 TRANSMIT = "transmit_order_test.cpp"
+OTHER = "receive_test.cpp"
+BEGIN = "begin_test.cpp"
 GUARD = 240  # seconds; a driver without its rules may hang
 
 # name: (what the driver no longer does, text of mcp2515_impl.hpp, what stands there instead,
@@ -66,6 +68,12 @@ MUTATIONS = {
         "quick = running_ ? read_quick_status() : 0;",
         "quick = running_ ? QuickStatus::txif : 0;",
         RECEIVE, ["ReceiveOrder.IsFoundAgainAfterALookThatWentWrong"]),
+    "nothing_is_cleared_that_was_not_read": (
+        "leave the chip's receive flags alone",
+        "return running_ && was_full;",
+        "modify_register(Register::canintf, static_cast<uint8_t>(1U << buffer), 0);\n"
+        "  return running_ && was_full;",
+        RECEIVE, ["ReceiveOrder.EveryInterleavingWhilePolling"]),
     "lower_priority_behind_buffer_1": (
         "give a frame that goes to buffer 2 behind one in buffer 1 a lower priority",
         "  --level;\n  return 2;",
@@ -107,6 +115,52 @@ MUTATIONS = {
         "  if (true) {\n    return TxOutcome::sent;\n  }",
         TRANSMIT, ["Abort.TakesBackWhatHasNotBegun",
                    "All/TransmitTrouble.EachFrameIsSentOnceAndReportedTruly/aborts"]),
+    "a_dlc_above_8_is_8_bytes": (
+        "take a DLC of 9 to 15 as 8",
+        "  if (frame.length > max_data_length) {",
+        "  if (false) {",
+        OTHER, ["Receive.ADlcAboveEightIsEightBytesAndNoMore"]),
+    "foreign_frames_are_dropped": (
+        "drop remote and standard frames",
+        "  if (!Traits::all_kinds && frame.kind != FrameKind::extended) {",
+        "  if (false) {",
+        OTHER, ["Receive.RemoteAndStandardFramesAreCountedAndDropped"]),
+    "overflows_are_looked_for": (
+        "look for an overflow after both buffers were full",
+        "    check_due_ = true;  // with both full, a third may have been lost",
+        "    check_due_ = false;",
+        OTHER, ["Overflow.EachLossThatIsServedInBetweenIsCounted"]),
+    "overflow_flags_are_cleared": (
+        "make the overflow flags ready for the next loss",
+        "modify_register(Register::eflg, errors & ErrorFlag::any_overflow, 0);",
+        "",
+        OTHER, ["Overflow.IsToldHoweverTheChipFlagsIt"]),
+    "the_state_of_the_bus_is_looked_at": (
+        "look at the chip every so many calls",
+        "calls_ >= mcp2515::calls_between_checks",
+        "false",
+        OTHER, ["BusState.IsToldWhilePolling", "ChipLoss.AResetIsNoticedWithAnInterruptLine"]),
+    "a_reset_shows_in_the_status": (
+        "expect its own flags in each status",
+        "  if (!is_plausible(quick) || quick == QuickStatus::everything) {",
+        "  if (false) {",
+        OTHER, ["ChipLoss.AResetIsNoticedWhilePolling",
+                "ChipLoss.AFrameReadFromACableThatFellOffIsDiscarded"]),
+    "what_was_written_is_read_back": (
+        "read back what it wrote",
+        "    same = transaction.exchange(0) == values[i] && same;",
+        "    transaction.exchange(0);",
+        BEGIN, ["Begin.NoticesAWriteThatDidNotArrive"]),
+    "the_oscillator_is_waited_for": (
+        "wait for a chip that starts slowly",
+        "  } while (port_.microseconds() - start < timeout_ms * UINT32_C(1000));",
+        "  } while (false);",
+        BEGIN, ["Begin.WaitsForAChipThatStartsSlowly"]),
+    "the_mode_is_confirmed": (
+        "see the chip enter its mode",
+        "    if (((values[0] ^ control) & mcp2515::Control::mode_mask) == 0 && values[1] == control) {",
+        "    if (true) {",
+        BEGIN, ["Begin.OnABusThatIsNeverIdleSaysSoInTime"]),
 }
 
 

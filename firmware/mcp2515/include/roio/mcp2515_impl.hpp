@@ -132,10 +132,13 @@ ROIO_MCP2515_MEMBER(bool)::configure(const Mcp2515Config& config) {
   bool same = write_and_compare(Register::rxf0sidh, filters.filter[0], 12);
   same = write_and_compare(Register::rxf3sidh, filters.filter[3], 12) && same;
   same = write_and_compare(Register::rxm0sidh, setup, sizeof setup) && same;
-  const uint8_t acceptance = config.everything ? RxControl::everything : RxControl::by_filters;
-  const uint8_t rx0 = acceptance | RxControl::rollover;
+  const uint8_t rx1 = config.everything ? RxControl::everything : RxControl::by_filters;
+  const uint8_t rx0 = rx1 | RxControl::rollover;
   write_registers(Register::rxb0ctrl, &rx0, 1);
-  write_registers(Register::rxb1ctrl, &acceptance, 1);
+  write_registers(Register::rxb1ctrl, &rx1, 1);
+  // These two also tell of frames received.
+  same = (read_register(Register::rxb0ctrl) & RxControl::settings) == rx0 && same;
+  same = (read_register(Register::rxb1ctrl) & RxControl::settings) == rx1 && same;
   for (uint8_t slot = 0; slot < 3; ++slot) {
     priority_[slot] = slot == urgent_slot ? urgent_level : highest_normal_level;
     same = write_and_compare(mcp2515::txbctrl(slot), &priority_[slot], 1) && same;
@@ -147,7 +150,10 @@ ROIO_MCP2515_MEMBER(bool)::enter_mode(uint8_t control) {
   write_registers(Register::canctrl, &control, 1);
   const uint32_t start = port_.microseconds();
   do {
-    if (((read_register(Register::canstat) ^ control) & mcp2515::Control::mode_mask) == 0) {
+    // CANCTRL with it: the 0 of normal mode could be that of a line that says nothing.
+    uint8_t values[2];  // CANSTAT, CANCTRL
+    read_registers(Register::canstat, values, 2);
+    if (((values[0] ^ control) & mcp2515::Control::mode_mask) == 0 && values[1] == control) {
       return true;
     }
   } while (port_.microseconds() - start < mcp2515::mode_timeout_us);

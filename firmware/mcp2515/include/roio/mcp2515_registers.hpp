@@ -102,6 +102,7 @@ struct RxControl {
   static constexpr uint8_t by_filters = 0x00;
   static constexpr uint8_t everything = 0x60;
   static constexpr uint8_t rollover = 0x04;
+  static constexpr uint8_t settings = everything | rollover;
 };
 
 /// SIDL, DLC of a buffer.

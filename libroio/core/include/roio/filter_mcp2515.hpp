@@ -42,7 +42,7 @@ inline void to_mcp2515_registers(uint32_t id, uint8_t registers[4]) {
   const uint8_t high = static_cast<uint8_t>(id >> 24);
   const uint8_t middle = static_cast<uint8_t>(id >> 16);
   registers[0] = static_cast<uint8_t>((high << 3) | (middle >> 5));
-  registers[1] = static_cast<uint8_t>(((middle << 3) & 0xE0U) | (middle & 0x03U));
+  registers[1] = static_cast<uint8_t>(((middle << 3) & 0xE0) | (middle & 0x03));
   registers[2] = static_cast<uint8_t>(id >> 8);
   registers[3] = static_cast<uint8_t>(id);
 }
@@ -50,8 +50,8 @@ inline void to_mcp2515_registers(uint32_t id, uint8_t registers[4]) {
 /// The inverse of to_mcp2515_registers(); other bits of SIDL are ignored.
 inline uint32_t from_mcp2515_registers(const uint8_t registers[4]) {
   const uint8_t high = static_cast<uint8_t>(registers[0] >> 3);
-  const uint8_t middle = static_cast<uint8_t>((registers[0] << 5) | ((registers[1] >> 3) & 0x1CU) |
-                                              (registers[1] & 0x03U));
+  const uint8_t middle = static_cast<uint8_t>((registers[0] << 5) | ((registers[1] >> 3) & 0x1C) |
+                                              (registers[1] & 0x03));
   return (static_cast<uint32_t>(high) << 24) | (static_cast<uint32_t>(middle) << 16) |
          (static_cast<uint32_t>(registers[2]) << 8) | registers[3];
 }
