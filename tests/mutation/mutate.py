@@ -127,8 +127,8 @@ MUTATIONS = {
         OTHER, ["Receive.RemoteAndStandardFramesAreCountedAndDropped"]),
     "overflows_are_looked_for": (
         "look for an overflow after both buffers were full",
-        "    check_due_ = true;  // with both full, a third may have been lost",
-        "    check_due_ = false;",
+        "  check_due_ = check_due_ || (quick_ != 0 && (buffer == 1 || rx1_is_older_));",
+        "",
         OTHER, ["Overflow.EachLossThatIsServedInBetweenIsCounted"]),
     "overflow_flags_are_cleared": (
         "make the overflow flags ready for the next loss",
@@ -139,7 +139,7 @@ MUTATIONS = {
         "look at the chip every so many calls",
         "calls_ >= mcp2515::calls_between_checks",
         "false",
-        OTHER, ["BusState.IsToldWhilePolling", "ChipLoss.AResetIsNoticedWithAnInterruptLine"]),
+        OTHER, ["BusState.IsToldWhilePolling", "ChipLoss.ASilentLineIsNotBelievedForEver"]),
     "a_reset_shows_in_the_status": (
         "expect its own flags in each status",
         "  if (!is_plausible(quick) || quick == QuickStatus::everything) {",

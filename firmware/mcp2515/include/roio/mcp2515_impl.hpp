@@ -284,9 +284,6 @@ ROIO_MCP2515_MEMBER(bool)::find_received() {
 /// @return whether it is one for the program.
 ROIO_MCP2515_MEMBER(bool)::fetch(Frame& frame) {
   const bool first = (quick_ & QuickStatus::rx0) != 0 && !rx1_is_older_;
-  if (quick_ == QuickStatus::any_rx) {
-    check_due_ = true;  // with both full, a third may have been lost
-  }
   if (!read_rx_buffer(first ? 0 : 1, frame)) {
     return false;
   }
