@@ -232,16 +232,7 @@ void Controller::sample_tail(std::uint8_t level) {
       }
       return;
     case acknowledge_slot_at:
-      if (transmitting_ && level == recessive) {
-        return fail(BusError::acknowledge);
-      }
-      if (output_ == dominant && level == recessive) {
-        return fail(BusError::bit);
-      }
-      if (output_ == dominant) {
-        acknowledged();
-      }
-      return;
+      return sample_acknowledge_slot(level);
     case acknowledge_delimiter_at:
       if (level == dominant) {
         return fail(BusError::form);
@@ -252,6 +243,18 @@ void Controller::sample_tail(std::uint8_t level) {
       return;
     default:
       return sample_end_of_frame(level);
+  }
+}
+
+void Controller::sample_acknowledge_slot(std::uint8_t level) {
+  if (transmitting_ && level == recessive) {
+    return fail(BusError::acknowledge);
+  }
+  if (output_ == dominant && level == recessive) {
+    return fail(BusError::bit);
+  }
+  if (output_ == dominant) {
+    acknowledged();
   }
 }
 

@@ -283,7 +283,7 @@ TEST(Controller, ErrorPassiveAt128ReceiveErrorsAndActiveAgainAt127) {
 
 TEST(Controller, ReceiveErrorsStopAt255) {
   Bench bench;
-  bench.run("000000 000000" + std::string(8 * 40, '0'));
+  bench.run("000000 000000" + std::string(320, '0'));
   EXPECT_EQ(bench.counters(), "TEC 0, REC 255");
 }
 
@@ -448,58 +448,58 @@ TEST(Controller, ErrorPassiveAbove127TransmitErrors) {
 class PassiveTransmitter : public testing::Test {
  protected:
   void SetUp() override {
-    bench.submit(frame);
+    bench_.submit(frame);
     for (int i = 0; i < 16; ++i) {
-      bench.fail_to_send();
+      bench_.fail_to_send();
     }
-    ASSERT_EQ(bench.counters(), "TEC 128, REC 0");
-    ASSERT_EQ(bench.controller.confinement(), Confinement::passive);
-    bench.owner.log.clear();
+    ASSERT_EQ(bench_.counters(), "TEC 128, REC 0");
+    ASSERT_EQ(bench_.controller.confinement(), Confinement::passive);
+    bench_.owner.log.clear();
   }
-  Bench bench;
+  Bench bench_;
   const std::string whole = Bench::own_bits(frame_wire.size());
   const std::string suspension = std::string(8, '1');
 };
 
 TEST_F(PassiveTransmitter, SuspendsForEightBits) {
-  EXPECT_EQ(bench.run("11111111" + whole), "11111111" + frame_wire);
-  bench.submit(frame);
-  bench.run(acknowledged);
+  EXPECT_EQ(bench_.run("11111111" + whole), "11111111" + frame_wire);
+  bench_.submit(frame);
+  bench_.run(acknowledged);
   // Active again with that: no longer.
-  EXPECT_EQ(bench.run(whole), frame_wire);
+  EXPECT_EQ(bench_.run(whole), frame_wire);
 }
 
 TEST_F(PassiveTransmitter, ReceivesWhileItSuspends) {
-  EXPECT_EQ(bench.run("111" + frame_wire + "1.1 1111111 111").substr(3 + frame_wire.size(), 3),
+  EXPECT_EQ(bench_.run("111" + frame_wire + "1.1 1111111 111").substr(3 + frame_wire.size(), 3),
             "101");
-  EXPECT_EQ(bench.owner.log, Log{frame_text});
+  EXPECT_EQ(bench_.owner.log, Log{frame_text});
   // A receiver does not suspend.
-  EXPECT_EQ(bench.run(whole), frame_wire);
+  EXPECT_EQ(bench_.run(whole), frame_wire);
 }
 
 TEST_F(PassiveTransmitter, IsNotCountedForALackOfAcknowledgement) {
   for (int i = 0; i < 100; ++i) {
-    EXPECT_EQ(bench.run(suspension + whole + "1 1 111111 11111111 111").substr(8 + whole.size()),
+    EXPECT_EQ(bench_.run(suspension + whole + "1 1 111111 11111111 111").substr(8 + whole.size()),
               std::string(19, '1'));
-    ASSERT_EQ(bench.counters(), "TEC 128, REC 0");
+    ASSERT_EQ(bench_.counters(), "TEC 128, REC 0");
   }
-  EXPECT_EQ(bench.owner.log.size(), 100U);
+  EXPECT_EQ(bench_.owner.log.size(), 100U);
 }
 
 TEST_F(PassiveTransmitter, IsCountedWhenSomebodyFlagsAfterALackOfAcknowledgement) {
-  bench.run(suspension + whole + "1 1 11111 0");
-  EXPECT_EQ(bench.counters(), "TEC 136, REC 0");
-  bench.run("00000");
-  EXPECT_EQ(bench.counters(), "TEC 136, REC 0") << "once";
+  bench_.run(suspension + whole + "1 1 11111 0");
+  EXPECT_EQ(bench_.counters(), "TEC 136, REC 0");
+  bench_.run("00000");
+  EXPECT_EQ(bench_.counters(), "TEC 136, REC 0") << "once";
 }
 
 TEST_F(PassiveTransmitter, IsCountedForAnyOtherError) {
-  bench.run(suspension + Bench::own_bits(36) + "1 111111");
-  EXPECT_EQ(bench.counters(), "TEC 136, REC 0");
-  bench.run("0000000");
-  EXPECT_EQ(bench.counters(), "TEC 136, REC 0");
-  bench.run("0");
-  EXPECT_EQ(bench.counters(), "TEC 144, REC 0") << "8 dominant bits after a passive flag";
+  bench_.run(suspension + Bench::own_bits(36) + "1 111111");
+  EXPECT_EQ(bench_.counters(), "TEC 136, REC 0");
+  bench_.run("0000000");
+  EXPECT_EQ(bench_.counters(), "TEC 136, REC 0");
+  bench_.run("0");
+  EXPECT_EQ(bench_.counters(), "TEC 144, REC 0") << "8 dominant bits after a passive flag";
 }
 
 // --- bus-off -------------------------------------------------------------------------------------
@@ -507,66 +507,66 @@ TEST_F(PassiveTransmitter, IsCountedForAnyOtherError) {
 class BusOff : public testing::Test {
  protected:
   void SetUp() override {
-    bench.submit(frame);
+    bench_.submit(frame);
     for (int i = 0; i < 16; ++i) {
-      bench.fail_to_send();
+      bench_.fail_to_send();
     }
     for (int i = 0; i < 15; ++i) {
-      bench.run("11111111" + Bench::own_bits(36) + "1 111111 11111111 111");
+      bench_.run("11111111" + Bench::own_bits(36) + "1 111111 11111111 111");
     }
-    ASSERT_EQ(bench.counters(), "TEC 248, REC 0");
-    ASSERT_EQ(bench.controller.confinement(), Confinement::passive);
-    bench.run("11111111" + Bench::own_bits(36) + "1");
-    ASSERT_EQ(bench.counters(), "TEC 256, REC 0");
-    ASSERT_EQ(bench.controller.confinement(), Confinement::bus_off);
-    bench.owner.log.clear();
+    ASSERT_EQ(bench_.counters(), "TEC 248, REC 0");
+    ASSERT_EQ(bench_.controller.confinement(), Confinement::passive);
+    bench_.run("11111111" + Bench::own_bits(36) + "1");
+    ASSERT_EQ(bench_.counters(), "TEC 256, REC 0");
+    ASSERT_EQ(bench_.controller.confinement(), Confinement::bus_off);
+    bench_.owner.log.clear();
   }
   void expect_recovery_with(const std::string& last) {
-    EXPECT_EQ(bench.controller.confinement(), Confinement::bus_off);
-    bench.run(last);
-    EXPECT_EQ(bench.controller.confinement(), Confinement::active);
-    EXPECT_EQ(bench.counters(), "TEC 0, REC 0");
-    EXPECT_EQ(bench.run(Bench::own_bits(frame_wire.size())), frame_wire) << "sends what waits";
+    EXPECT_EQ(bench_.controller.confinement(), Confinement::bus_off);
+    bench_.run(last);
+    EXPECT_EQ(bench_.controller.confinement(), Confinement::active);
+    EXPECT_EQ(bench_.counters(), "TEC 0, REC 0");
+    EXPECT_EQ(bench_.run(Bench::own_bits(frame_wire.size())), frame_wire) << "sends what waits";
   }
-  Bench bench;
+  Bench bench_;
 };
 
 TEST_F(BusOff, EndsAfter128Times11RecessiveBits) {
-  bench.run(std::string(128 * 11 - 1, '1'));
+  bench_.run(std::string(128 * 11 - 1, '1'));
   expect_recovery_with("1");
 }
 
 TEST_F(BusOff, TenRecessiveBitsDoNotCount) {
   for (int i = 0; i < 200; ++i) {
-    bench.run("0 1111111111");
+    bench_.run("0 1111111111");
   }
-  bench.run("0" + std::string(128 * 11 - 1, '1'));
+  bench_.run("0" + std::string(128 * 11 - 1, '1'));
   expect_recovery_with("1");
 }
 
 TEST_F(BusOff, SequencesCountThoughFramesComeBetweenThem) {
   for (int i = 0; i < 127; ++i) {
-    bench.run("0 11111111111");
+    bench_.run("0 11111111111");
   }
-  bench.run("000000 1111111111");
+  bench_.run("000000 1111111111");
   expect_recovery_with("1");
 }
 
 TEST_F(BusOff, DrivesNothingAndHearsNothing) {
-  EXPECT_EQ(bench.run(frame_wire + "1 0 1 1111111 111"), std::string(frame_wire.size() + 13, '1'));
-  EXPECT_EQ(bench.owner.log, Log{});
+  EXPECT_EQ(bench_.run(frame_wire + "1 0 1 1111111 111"), std::string(frame_wire.size() + 13, '1'));
+  EXPECT_EQ(bench_.owner.log, Log{});
 }
 
 TEST_F(BusOff, StartsOverWhenTheModeIsSetButEndsWithAReset) {
-  bench.run(std::string(100 * 11, '1'));
-  bench.controller.set_mode(Controller::Mode::off);
-  bench.controller.set_mode(Controller::Mode::normal);
-  bench.run(std::string(127 * 11, '1'));
-  EXPECT_EQ(bench.controller.confinement(), Confinement::bus_off);
-  bench.controller.reset_error_counters();
-  bench.controller.set_mode(Controller::Mode::normal);
-  bench.run(integration);
-  EXPECT_EQ(bench.run(Bench::own_bits(frame_wire.size())), frame_wire);
+  bench_.run(std::string(1'100, '1'));
+  bench_.controller.set_mode(Controller::Mode::off);
+  bench_.controller.set_mode(Controller::Mode::normal);
+  bench_.run(std::string(1'397, '1'));
+  EXPECT_EQ(bench_.controller.confinement(), Confinement::bus_off);
+  bench_.controller.reset_error_counters();
+  bench_.controller.set_mode(Controller::Mode::normal);
+  bench_.run(integration);
+  EXPECT_EQ(bench_.run(Bench::own_bits(frame_wire.size())), frame_wire);
 }
 
 // --- arbitration ---------------------------------------------------------------------------------

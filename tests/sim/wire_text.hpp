@@ -30,6 +30,7 @@ inline std::string text_of(const Frame& frame) {
 
 inline std::vector<std::string> text_of(const std::vector<Frame>& frames) {
   std::vector<std::string> texts;
+  texts.reserve(frames.size());
   for (const Frame& frame : frames) {
     texts.push_back(text_of(frame));
   }

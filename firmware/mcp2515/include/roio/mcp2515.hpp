@@ -252,6 +252,8 @@ class Mcp2515 {
   bool reset_chip(uint16_t timeout_ms);
   bool configure(const Mcp2515Config& config);
   bool enter_mode(uint8_t control);
+  void load_clock_frames();
+  uint32_t time_clock_frames(uint32_t limit_us);
 
   // what READ STATUS shows
   bool is_plausible(uint8_t quick) const;

@@ -30,7 +30,7 @@ constexpr uint8_t clock_tolerance = 8;  ///< One part in so many; crystals in us
 // --- single accesses -----------------------------------------------------------------------------
 
 ROIO_MCP2515_MEMBER(uint8_t)::read_register(Register address) {
-  uint8_t value;
+  uint8_t value = 0;
   read_registers(address, &value, 1);
   return value;
 }
@@ -199,35 +199,11 @@ ROIO_MCP2515_MEMBER(Status)::check_clock(const Mcp2515Config& config, uint32_t o
   if (!enter_mode(static_cast<uint8_t>(mcp2515::Mode::loopback) | Control::clock_out)) {
     return Status::wrong_mode;
   }
-  uint8_t image[13] = {0, 0, 0, 0, max_data_length};
-  to_mcp2515_registers(mcp2515::clock_frame_id, image);
-  image[1] |= mcp2515::extended_bit;
-  for (uint8_t i = 5; i < sizeof image; ++i) {
-    image[i] = mcp2515::clock_frame_data;
-  }
-  uint8_t all = 0;
-  for (uint8_t slot = 0; slot < mcp2515::clock_frames; ++slot) {
-    // SIDH is the register behind TXBnCTRL.
-    write_registers(static_cast<Register>(static_cast<uint8_t>(mcp2515::txbctrl(slot)) + 1U), image,
-                    sizeof image);
-    all |= mcp2515::request_to_send(slot);
-  }
-  {
-    Transaction transaction(port_);
-    transaction.exchange(all);
-  }
-  const uint32_t start = port_.microseconds();
-  const uint8_t requested = QuickStatus::txreq(0) | QuickStatus::txreq(1) | QuickStatus::txreq(2);
-  uint32_t elapsed_us = 0;
   const uint32_t clocks = UINT32_C(2) * mcp2515::clock_frames * mcp2515::clock_frame_bits *
                           config.timing.prescaler * quanta_per_bit(config.timing);
   const uint32_t expected_us = clocks / (osc_hz / 1000U) * 1000U;
-  do {
-    elapsed_us = port_.microseconds() - start;
-    if ((read_quick_status() & requested) == 0) {
-      break;
-    }
-  } while (elapsed_us < mcp2515::clock_timeout_us + 2U * expected_us);
+  load_clock_frames();
+  const uint32_t elapsed_us = time_clock_frames(mcp2515::clock_timeout_us + 2U * expected_us);
   const uint8_t configuration =
       static_cast<uint8_t>(mcp2515::Mode::configuration) | Control::clock_out;
   if (!enter_mode(configuration) || elapsed_us == 0) {
@@ -239,6 +215,42 @@ ROIO_MCP2515_MEMBER(Status)::check_clock(const Mcp2515Config& config, uint32_t o
       measured_khz > told_khz ? measured_khz - told_khz : told_khz - measured_khz;
   measured_hz = measured_khz * 1000U;
   return difference <= told_khz / mcp2515::clock_tolerance ? Status::ok : Status::wrong_clock;
+}
+
+/// One and the same frame into all three transmit buffers.
+ROIO_MCP2515_MEMBER(void)::load_clock_frames() {
+  uint8_t id[4];
+  to_mcp2515_registers(mcp2515::clock_frame_id, id);
+  for (uint8_t slot = 0; slot < mcp2515::clock_frames; ++slot) {
+    Transaction transaction(port_);
+    transaction.exchange(mcp2515::load_tx(slot));
+    transaction.exchange(id[0]);
+    transaction.exchange(static_cast<uint8_t>(id[1] | mcp2515::extended_bit));
+    transaction.exchange(id[2]);
+    transaction.exchange(id[3]);
+    transaction.exchange(max_data_length);
+    for (uint8_t i = 0; i < max_data_length; ++i) {
+      transaction.exchange(mcp2515::clock_frame_data);
+    }
+  }
+}
+
+/// Sends them, and waits until all are gone.
+/// @return how long that took, or some time from limit_us on.
+ROIO_MCP2515_MEMBER(uint32_t)::time_clock_frames(uint32_t limit_us) {
+  constexpr uint8_t requested =
+      QuickStatus::txreq(0) | QuickStatus::txreq(1) | QuickStatus::txreq(2);
+  {
+    Transaction transaction(port_);
+    transaction.exchange(mcp2515::request_to_send(0) | mcp2515::request_to_send(1) |
+                         mcp2515::request_to_send(2));
+  }
+  const uint32_t start = port_.microseconds();
+  uint32_t elapsed_us = 0;
+  do {
+    elapsed_us = port_.microseconds() - start;
+  } while ((read_quick_status() & requested) != 0 && elapsed_us < limit_us);
+  return elapsed_us;
 }
 
 // --- what READ STATUS shows ----------------------------------------------------------------------
@@ -305,8 +317,8 @@ ROIO_MCP2515_MEMBER(bool)::fetch(Frame& frame) {
 /// while, and it is the next call's first.
 /// @return false: there was no frame, or the chip was lost meanwhile and it cannot be trusted.
 ROIO_MCP2515_MEMBER(bool)::read_rx_buffer(uint8_t buffer, Frame& frame) {
-  uint8_t quick;
-  bool was_full;
+  uint8_t quick = 0;
+  bool was_full = false;
   {
     Transaction transaction(port_);
     read_frame(transaction, buffer, frame);
@@ -332,8 +344,8 @@ ROIO_MCP2515_MEMBER(bool)::read_rx_buffer(uint8_t buffer, Frame& frame) {
 ROIO_MCP2515_MEMBER(void)::read_frame(Transaction& transaction, uint8_t buffer, Frame& frame) {
   transaction.exchange(mcp2515::read_rx(buffer));
   uint8_t id[4];
-  for (uint8_t i = 0; i < sizeof id; ++i) {
-    id[i] = transaction.exchange(0);
+  for (uint8_t& byte : id) {
+    byte = transaction.exchange(0);
   }
   const uint8_t dlc = transaction.exchange(0);
   const bool extended = (id[1] & mcp2515::extended_bit) != 0;

@@ -234,8 +234,8 @@ inline void judge(Mcp2515Filters& image, const FilterRule* begin, const FilterRu
 
 /// One mask and two filters, in both buffers.
 inline void fill(Mcp2515Filters& image, uint32_t mask, uint32_t first, uint32_t second) {
-  for (uint8_t m = 0; m < Mcp2515Filters::mask_count; ++m) {
-    to_mcp2515_registers(mask, image.mask[m]);
+  for (auto& registers : image.mask) {
+    to_mcp2515_registers(mask, registers);
   }
   for (uint8_t f = 0; f < Mcp2515Filters::filter_count; ++f) {
     to_mcp2515_registers((f == 1 ? second : first) & mask, image.filter[f]);
@@ -336,7 +336,8 @@ Mcp2515Filters fit_mcp2515_in_order(const FilterProgram<Capacity>& program) {
   // filters accept twice as much as one behind the same mask.
   uint8_t best = 0;
   uint32_t fewest = UINT32_MAX;
-  for (uint8_t half = 0; half < (1U << (count - 1U)); ++half) {
+  const uint8_t ways = static_cast<uint8_t>(1U << (count - 1U));
+  for (uint8_t half = 0; half < ways; ++half) {
     const uint8_t second = static_cast<uint8_t>(half << 1);
     const FilterRule shared = {0, detail::shared_mask(rules, count, second), FilterMeaning::custom};
     const uint32_t accepted = (UINT32_C(1) << detail::open_bits(shared)) << (second != 0 ? 1 : 0);

@@ -30,19 +30,26 @@ enum class Status : uint8_t {
   wrong_clock,    ///< The controller's oscillator is not the one that the bit timing is for.
 };
 
+namespace detail {
+constexpr const char* status_texts[] = {"ok",
+                                        "bad argument",
+                                        "full",
+                                        "not a Roio frame",
+                                        "unknown class",
+                                        "nothing received",
+                                        "no controller answers",
+                                        "controller not in the mode asked for",
+                                        "impossible bit timing",
+                                        "controller runs at another clock"};
+static_assert(sizeof status_texts / sizeof status_texts[0] ==
+                  static_cast<uint8_t>(Status::wrong_clock) + 1U,
+              "one text for each status");
+}  // namespace detail
+
 /// A short lower-case phrase, for logs and messages; never null.
 constexpr const char* to_string(Status status) {
-  return status == Status::ok              ? "ok"
-         : status == Status::bad_argument  ? "bad argument"
-         : status == Status::full          ? "full"
-         : status == Status::not_roio      ? "not a Roio frame"
-         : status == Status::unknown_class ? "unknown class"
-         : status == Status::empty         ? "nothing received"
-         : status == Status::no_chip       ? "no controller answers"
-         : status == Status::wrong_mode    ? "controller not in the mode asked for"
-         : status == Status::bad_timing    ? "impossible bit timing"
-         : status == Status::wrong_clock   ? "controller runs at another clock"
-                                           : "unknown status";
+  return status <= Status::wrong_clock ? detail::status_texts[static_cast<uint8_t>(status)]
+                                       : "unknown status";
 }
 
 }  // namespace roio

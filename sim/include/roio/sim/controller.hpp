@@ -161,6 +161,7 @@ class Controller {
   bool sample_own_bit(std::uint8_t level);
   void end_of_crc();
   void sample_tail(std::uint8_t level);
+  void sample_acknowledge_slot(std::uint8_t level);
   void sample_end_of_frame(std::uint8_t level);
   void sample_flag(std::uint8_t level);
   void sample_flag_end(std::uint8_t level);

@@ -17,6 +17,8 @@ class HostNode : private ControllerClient {
   HostNode(CanBus& bus, std::uint32_t bitrate_bps,
            Controller::Mode mode = Controller::Mode::normal);
   ~HostNode() override;
+  HostNode(const HostNode&) = delete;
+  HostNode& operator=(const HostNode&) = delete;
 
   /// Queues a frame; extended ones with bit 28 clear go ahead of those that have it set, and within
   /// these two the order is kept. A length of 9..15 is sent as that DLC with 8 bytes.

@@ -58,6 +58,8 @@ class Mcp2515Chip : private ControllerClient {
   /// Powered on right now.
   explicit Mcp2515Chip(CanBus& bus, const Mcp2515Options& options = {});
   ~Mcp2515Chip() override;
+  Mcp2515Chip(const Mcp2515Chip&) = delete;
+  Mcp2515Chip& operator=(const Mcp2515Chip&) = delete;
 
   // --- SPI (12): what the chip shifts out while it shifts a byte in ------------------------------
 
