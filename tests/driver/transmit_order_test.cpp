@@ -59,8 +59,9 @@ TEST(TransmitOrder, ManyInARow) {
     poll_until_idle(rig);
     EXPECT_EQ(numbers_of(rig.peer_received), counting(0, count));
     ASSERT_EQ(rig.can.traits().outcomes.size(), count);
-    for (std::uint8_t i = 0; i < count; ++i) {
-      EXPECT_EQ(rig.can.traits().outcomes[i], (Outcome{i, TxOutcome::sent}));
+    for (std::uint32_t i = 0; i < count; ++i) {
+      EXPECT_EQ(rig.can.traits().outcomes[i],
+                (Outcome{static_cast<std::uint8_t>(i), TxOutcome::sent}));
     }
     EXPECT_EQ(rig.can.counters().sent, count);
   }
@@ -287,6 +288,7 @@ class TransmitTrouble : public testing::TestWithParam<Trouble> {
     }
     EXPECT_EQ(oldest, submitted_.size()) << "each frame has an outcome";
     std::vector<TxOutcome> result;
+    result.reserve(told.size());
     for (const std::optional<TxOutcome>& one : told) {
       result.push_back(one.value_or(TxOutcome::unknown));
     }
