@@ -362,6 +362,8 @@ TEST(CheckClock, SaysWhatElseIsWrong) {
   config.timing = BitTiming{};
   EXPECT_EQ(rig.can.check_clock(config, 16'000'000, measured), Status::bad_timing);
   EXPECT_EQ(measured, 0U);
+  EXPECT_EQ(rig.can.check_clock(plain_config(), 16, measured), Status::bad_argument)
+      << "megahertz where hertz are asked for";
   rig.wire.set_fault(sim::SpiWire::Fault::stuck_high);
   EXPECT_EQ(rig.can.check_clock(plain_config(), 16'000'000, measured), Status::no_chip);
 }

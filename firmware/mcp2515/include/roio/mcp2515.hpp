@@ -42,28 +42,28 @@
 
 namespace roio {
 
-/// What a Port has to look like. The driver constructs one from the arguments of its own
-/// constructor.
-///
-///   struct PortExample {
-///     static constexpr bool has_interrupt_line = true;
-///     bool interrupt_line_is_low();
-///     uint32_t microseconds();        // free running; only differences are used
-///     class Transaction {             // chip select is low as long as one lives
-///      public:
-///       explicit Transaction(PortExample&);
-///       uint8_t exchange(uint8_t out);
-///       void restart();               // chip select high, then low again
-///       ~Transaction();
-///     };
-///     class Uninterrupted {           // while one lives, nothing else runs: interrupts are off
-///      public:
-///       explicit Uninterrupted(PortExample&);
-///       ~Uninterrupted();
-///     };
-///   };
-///
-/// SPI mode 0,0 at 10 MHz at most (mode 1,1 would send a frame twice, errata item 5).
+// What a Port has to look like. The driver constructs one from the arguments of its own
+// constructor.
+//
+//   struct PortExample {
+//     static constexpr bool has_interrupt_line = true;
+//     bool interrupt_line_is_low();
+//     uint32_t microseconds();        // free running; only differences are used
+//     class Transaction {             // chip select is low as long as one lives
+//      public:
+//       explicit Transaction(PortExample&);
+//       uint8_t exchange(uint8_t out);
+//       void restart();               // chip select high, then low again
+//       ~Transaction();
+//     };
+//     class Uninterrupted {           // while one lives, nothing else runs: interrupts are off
+//      public:
+//       explicit Uninterrupted(PortExample&);
+//       ~Uninterrupted();
+//     };
+//   };
+//
+// SPI mode 0,0 at 10 MHz at most (mode 1,1 would send a frame twice, errata item 5).
 
 struct Mcp2515Config {
   BitTiming timing;
@@ -83,7 +83,7 @@ struct Mcp2515Config {
 /// What became of a frame that send() took.
 enum class TxOutcome : uint8_t {
   sent,     ///< On the bus, and acknowledged by at least one node.
-  failed,   ///< One shot, and it lost arbitration or met an error: not sent.
+  failed,   ///< One shot, and it lost arbitration, met an error or was not acknowledged.
   aborted,  ///< Taken back by abort(): not sent.
   unknown,  ///< The chip lost its memory while it had the frame; it may have been sent.
 };
@@ -91,7 +91,7 @@ enum class TxOutcome : uint8_t {
 /// Fault confinement, as EFLG had it when it was last looked at.
 enum class Mcp2515State : uint8_t { active, warning, passive, bus_off };
 
-/// Counted since construction, modulo the type's range. Every frame lost is in one of these.
+/// Counted since construction, modulo the type's range. Each loss is in one of these.
 template <typename Count>
 struct Mcp2515Counters {
   Count received;        ///< Frames taken from the chip for the program.
@@ -102,9 +102,10 @@ struct Mcp2515Counters {
   Count not_sent;        ///< Frames taken back or failed.
   Count unknown;         ///< Frames that the chip had when it lost its memory.
   Count message_errors;  ///< Times that errors on the bus were seen: at least one each.
-  Count bus_offs;        ///< Times that the chip was found bus-off, or was so since last looked at.
-  Count chip_losses;     ///< Times that the chip was reset, unplugged, or answered nonsense.
-  Count discarded;       ///< Frames read and thrown away because the chip was lost meanwhile.
+  Count bus_offs;        ///< Times that the chip was found bus-off.
+  Count chip_losses;  ///< Times that the chip was reset, unplugged, or answered nonsense: up to two
+                      ///< received frames went with it each time.
+  Count discarded;    ///< Frames read and thrown away because the chip was lost meanwhile.
 };
 
 /// What to leave in. Derive from it, change what differs, pass it as Traits.
@@ -119,14 +120,15 @@ struct Mcp2515Traits {
   /// Whether anybody wants to know what became of each frame. If not, the driver does not ask the
   /// chip just for that.
   static constexpr bool reports_outcomes = false;
-  /// Called from send(), poll() and receive(), with the token that send() was given.
+  /// Called from send(), poll(), receive(), abort(), begin() and check_clock(), with the token that
+  /// send() was given. Must not call the driver.
   void on_outcome(uint8_t, TxOutcome) {}
 };
 
 /// @tparam RxQueue frames that poll() fetches ahead of receive(), 0..127, 14 bytes each. 0: each
 ///         receive() reads one from the chip.
-/// @tparam TxQueue frames that wait for the chip beside the three that it holds, 0..127, 15 bytes
-///         each. 0: send() says full when the chip has no room.
+/// @tparam TxQueue frames that wait beside those in the chip (two normal ones and an urgent one),
+///         0..127, 15 bytes each. 0: send() says full when the chip has no room.
 template <typename Port, uint8_t RxQueue = 2, uint8_t TxQueue = 2, typename Traits = Mcp2515Traits>
 class Mcp2515 {
  public:
@@ -153,15 +155,13 @@ class Mcp2515 {
 
   /// Resets the chip and sets it up; what it held is gone (frames that it was to send are reported
   /// as unknown). What waits in the queues stays. May be called again at any time, and must be when
-  /// poll() says that the chip is lost.
-  /// Takes about 1 ms plus the wait for a slow oscillator, config.start_timeout_ms at most, plus 11
-  /// bits of idle bus, 10 ms at most.
-  /// @return ok; bad_timing: the chip cannot run at this timing; bad_argument: filters that cannot
-  /// keep
-  ///         the order (Mcp2515Filters::in_order), or everything without Traits::all_kinds; after
-  ///         these two nothing was touched. no_chip: no answer, or not what was written;
-  ///         wrong_mode: the mode was not entered (the bus is never idle: stuck, or no
-  ///         transceiver).
+  /// poll() says that the chip is lost. Takes 1 ms when all is well; at most
+  /// config.start_timeout_ms for a chip that does not answer, and 50 ms for a bus that is never
+  /// idle for 11 bits.
+  /// @return ok. bad_timing: the chip cannot run at this timing; bad_argument: filters that cannot
+  ///         keep the order (Mcp2515Filters::in_order), or everything without Traits::all_kinds;
+  ///         after these two nothing was touched. no_chip: no answer, or not what was written.
+  ///         wrong_mode: the mode was not entered (the bus is stuck, or has no transceiver).
   ROIO_NODISCARD Status begin(const Mcp2515Config& config);
 
   /// Fetches what has come in, hands over what waits, looks after errors. Bounded: at most RxQueue
@@ -200,10 +200,11 @@ class Mcp2515 {
 
   /// Finds out whether the oscillator is what `config.timing` takes it for, by sending a frame from
   /// the chip to itself and timing it. Nothing goes to the bus. Ends in configuration mode: begin()
-  /// comes after it. Takes at most 20 ms and twice the frame.
-  /// @param osc_hz what the timing was computed for.
+  /// comes after it. Takes three frames of 131 bits; at most 20 ms and twice as long as they
+  /// should.
+  /// @param osc_hz what the timing was computed for, 1,000,000 or more.
   /// @param measured_hz what the oscillator is, to some percent; 0 unless ok or wrong_clock.
-  /// @return ok: within 10 %; wrong_clock; else as begin().
+  /// @return ok: within one eighth; wrong_clock; bad_argument: osc_hz too low; else as begin().
   ROIO_NODISCARD Status check_clock(const Mcp2515Config& config, uint32_t osc_hz,
                                     uint32_t& measured_hz);
 

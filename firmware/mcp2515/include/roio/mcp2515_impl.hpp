@@ -23,6 +23,7 @@ constexpr uint32_t clock_frame_id = UINT32_C(0x0AAAAAAA);
 constexpr uint8_t clock_frame_data = 0x55;
 constexpr uint16_t clock_frame_bits = 131;
 constexpr uint8_t clock_frames = 3;
+constexpr uint32_t slowest_osc_hz = 1000000;  ///< The chip takes 1 to 40 MHz.
 constexpr uint32_t clock_timeout_us = 20000;
 constexpr uint8_t clock_tolerance = 8;  ///< One part in so many; crystals in use are 1 in 4 apart.
 }  // namespace mcp2515
@@ -191,6 +192,9 @@ ROIO_MCP2515_MEMBER(Status)::check_clock(const Mcp2515Config& config, uint32_t o
   measured_hz = 0;
   if (!is_valid(config.timing)) {
     return Status::bad_timing;
+  }
+  if (osc_hz < mcp2515::slowest_osc_hz) {
+    return Status::bad_argument;
   }
   forget_chip();
   if (!reset_chip(config.start_timeout_ms) || !configure(config)) {
