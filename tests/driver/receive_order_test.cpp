@@ -126,6 +126,31 @@ TEST(ReceiveOrder, IsFoundAgainAfterALookThatWentWrong) {
   EXPECT_EQ(rig.receive_all(), (std::vector{numbered('B'), numbered('C')}));
 }
 
+TEST(ReceiveOrder, IsNotGuessedAfterALookThatWentWrong) {
+  // The look after A comes back as nonsense, and before the next one both buffers have been filled:
+  // no order is better than a wrong one, and the loss is told.
+  Rig<> rig;
+  rig.begin();
+  rig.chip.receive(numbered('A'));
+  rig.mark();
+  bool come = false;
+  rig.wire.on_step([&] {
+    const auto bytes = rig.spent().first;
+    if (bytes == 13 && !come) {
+      rig.wire.set_fault(sim::SpiWire::Fault::stuck_low);
+    } else if (bytes == 14 && !come) {
+      come = true;
+      rig.wire.clear_faults();
+      rig.chip.receive(numbered('B'));
+      rig.chip.receive(numbered('C'));
+    }
+  });
+  Frame frame{};
+  EXPECT_EQ(rig.can.receive(frame), Status::no_chip);
+  EXPECT_EQ(rig.can.counters().chip_losses, 1U);
+  EXPECT_EQ(rig.can.begin(plain_config()), Status::ok);
+}
+
 TEST(ReceiveOrder, ASpikeOnTheInterruptLineIsNoFrame) {
   Rig<true> rig;
   rig.begin();

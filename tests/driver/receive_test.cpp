@@ -159,6 +159,16 @@ TEST(Overflow, EachLossThatIsServedInBetweenIsCounted) {
   EXPECT_EQ(rig.can.counters().overflows, rig.chip.events().overflowed);
 }
 
+TEST(Overflow, IsCountedBeforeAnotherBeginForgetsIt) {
+  Rig<> rig;
+  rig.begin();
+  for (std::uint32_t i = 0; i < 3; ++i) {
+    rig.chip.receive(numbered(i));
+  }
+  ASSERT_EQ(rig.can.begin(plain_config()), Status::ok);
+  EXPECT_EQ(rig.can.counters().overflows, 1U);
+}
+
 TEST(Overflow, NothingIsClearedThatWasNotRead) {
   // A driver that clears receive flags itself loses the frame that came in between. This one never
   // writes them: it is enough that READ RX BUFFER does.
@@ -236,6 +246,18 @@ TEST(BusState, IsToldWhilePolling) {
 }
 TEST(BusState, IsToldWithAnInterruptLine) {
   expect_states_are_told<true>();
+}
+
+TEST(Send, IsSettledInTheEndThoughNobodyAsks) {
+  Rig<true, 2, 2, Mcp2515Traits> rig;
+  rig.begin();
+  ASSERT_EQ(rig.can.send(numbered(1)), Status::ok);
+  rig.bus.run_for(milliseconds(1));
+  for (int i = 0; i < 64; ++i) {
+    ASSERT_EQ(rig.can.poll(), Status::ok);
+  }
+  EXPECT_EQ(rig.can.counters().sent, 1U);
+  EXPECT_EQ(rig.can.in_flight(), 0);
 }
 
 // --- the chip goes away --------------------------------------------------------------------------

@@ -142,7 +142,7 @@ MUTATIONS = {
         OTHER, ["BusState.IsToldWhilePolling", "ChipLoss.ASilentLineIsNotBelievedForEver"]),
     "a_reset_shows_in_the_status": (
         "expect its own flags in each status",
-        "  if (!is_plausible(quick) || quick == QuickStatus::everything) {",
+        "  if (nonsense || quick == QuickStatus::everything) {",
         "  if (false) {",
         OTHER, ["ChipLoss.AResetIsNoticedWhilePolling",
                 "ChipLoss.AFrameReadFromACableThatFellOffIsDiscarded"]),

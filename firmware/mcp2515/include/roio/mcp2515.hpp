@@ -164,8 +164,8 @@ class Mcp2515 {
   ///         wrong_mode: the mode was not entered (the bus is stuck, or has no transceiver).
   ROIO_NODISCARD Status begin(const Mcp2515Config& config);
 
-  /// Fetches what has come in, hands over what waits, looks after errors. Bounded: at most RxQueue
-  /// + 2 frames and a handful of registers.
+  /// Fetches what has come in (with RxQueue 0 that is receive()'s alone), hands over what waits,
+  /// looks after errors. Bounded: at most RxQueue + 2 frames and a handful of registers.
   /// @return ok; no_chip: the chip was reset or is not there, or begin() has not succeeded yet.
   Status poll();
 
@@ -258,7 +258,7 @@ class Mcp2515 {
 
   // what READ STATUS shows
   bool is_plausible(uint8_t quick) const;
-  void note(uint8_t quick);
+  void note(uint8_t quick, bool freed_rx0 = false);
 
   // receiving
   bool find_received();

@@ -169,6 +169,9 @@ ROIO_MCP2515_MEMBER(Status)::begin(const Mcp2515Config& config) {
   if (config.everything ? !Traits::all_kinds : !config.filters.in_order) {
     return Status::bad_argument;
   }
+  if (running_) {
+    check_chip();  // losses that it knows of are counted before it forgets them
+  }
   forget_chip();
   if (!reset_chip(config.start_timeout_ms) || !configure(config)) {
     return Status::no_chip;
@@ -265,13 +268,18 @@ ROIO_MCP2515_MEMBER(bool)::is_plausible(uint8_t quick) const {
   return (quick & static_cast<uint8_t>(~(QuickStatus::any_rx | pending_))) == QuickStatus::txif;
 }
 
-ROIO_MCP2515_MEMBER(void)::note(uint8_t quick) {
+/// @param freed_rx0 this is the look right after RXB0 was freed.
+ROIO_MCP2515_MEMBER(void)::note(uint8_t quick, bool freed_rx0) {
   fresh_ = true;
+  const bool nonsense = !is_plausible(quick);
   // All buffers in use looks like a line stuck at 1: that wants a second opinion, too.
-  if (!is_plausible(quick) || quick == QuickStatus::everything) {
+  if (nonsense || quick == QuickStatus::everything) {
     check_chip();
     quick = running_ ? read_quick_status() : 0;
-    if (!is_plausible(quick)) {
+    // The second look comes later: two frames may be in by now, and nothing tells their order.
+    const bool order_lost =
+        nonsense && freed_rx0 && (quick & QuickStatus::any_rx) == QuickStatus::any_rx;
+    if (order_lost || !is_plausible(quick)) {
       lose_chip();
       return;
     }
@@ -334,7 +342,7 @@ ROIO_MCP2515_MEMBER(bool)::read_rx_buffer(uint8_t buffer, Frame& frame) {
     quick = transaction.exchange(0);
   }
   quick_ = 0;
-  note(quick);
+  note(quick, buffer == 0);
   rx1_is_older_ = buffer == 0 && (quick_ & QuickStatus::rx1) != 0;
   // Perhaps both were full for a while, and a third frame was lost.
   check_due_ = check_due_ || (quick_ != 0 && (buffer == 1 || rx1_is_older_));
@@ -584,8 +592,10 @@ ROIO_MCP2515_MEMBER(void)::abort() {
 
 /// What is done at the end of every call that has time.
 ROIO_MCP2515_MEMBER(void)::tend() {
+  ++calls_;
+  const bool check = calls_ >= mcp2515::calls_between_checks;
   const bool somebody_waits =
-      !tx_queue_.empty() || aborting_ || (Traits::reports_outcomes && pending_ != 0);
+      !tx_queue_.empty() || aborting_ || (pending_ != 0 && (Traits::reports_outcomes || check));
   if (running_ && somebody_waits && !fresh_) {
     note(read_quick_status());
   }
@@ -596,8 +606,7 @@ ROIO_MCP2515_MEMBER(void)::tend() {
   if (running_) {
     pump();
   }
-  ++calls_;
-  if (running_ && ((check_due_ && quick_ == 0) || calls_ >= mcp2515::calls_between_checks)) {
+  if (running_ && (check || (check_due_ && quick_ == 0))) {
     check_chip();
   }
 }
