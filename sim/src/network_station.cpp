@@ -12,12 +12,6 @@ constexpr SpiWire::Timing no_time{SimTime(0), SimTime(0)};
 // More bits than the longest frame has, with an error frame and the pause after both.
 constexpr int bits_of_any_frame = 200;
 
-Mcp2515Config config_of(const BitTiming& timing) {
-  Mcp2515Config config(timing, Mcp2515Filters{});
-  config.everything = true;
-  return config;
-}
-
 BusState to_bus_state(Mcp2515State state) {
   switch (state) {
     case Mcp2515State::active:
@@ -37,7 +31,7 @@ BusState to_bus_state(Mcp2515State state) {
 Station::Station(CanBus& bus, const NetworkOptions& options, const BitTiming& timing,
                  Timestamp epoch, std::shared_ptr<Exchange> exchange)
     : bus_(bus),
-      config_(config_of(timing)),
+      config_(timing, mcp2515_filters_of_everything()),
       longest_frame_(cycles(bits_of_any_frame, options.bitrate_bps)),
       epoch_(epoch),
       exchange_(std::move(exchange)),

@@ -136,15 +136,6 @@ TEST(Begin, RefusesAnImpossibleTimingWithoutTouchingTheChip) {
   expect_it_works(rig);
 }
 
-TEST(Begin, RefusesForeignFramesToADriverWithoutThem) {
-  Rig<> rig;
-  rig.begin();
-  Mcp2515Config config = plain_config();
-  config.everything = true;
-  EXPECT_EQ(rig.can.begin(config), Status::bad_argument);
-  EXPECT_EQ(rig.spent().first, 0U);
-}
-
 TEST(Begin, RefusesFiltersThatCannotKeepTheOrder) {
   FilterProgram<8> program;
   for (const std::uint32_t id : {0b0000U, 0b0011U, 0b0101U, 0b0110U}) {
@@ -155,18 +146,6 @@ TEST(Begin, RefusesFiltersThatCannotKeepTheOrder) {
   EXPECT_EQ(rig.can.begin({plain_config().timing, fit_mcp2515(program)}), Status::bad_argument);
   EXPECT_EQ(rig.spent().first, 0U);
   EXPECT_EQ(rig.can.begin({plain_config().timing, fit_mcp2515_in_order(program)}), Status::ok);
-}
-
-struct AllKinds : TestTraits {
-  static constexpr bool all_kinds = true;
-};
-
-TEST(Begin, AsksForNoFiltersWhenEverythingIsWanted) {
-  Rig<false, 0, 0, AllKinds> rig;
-  Mcp2515Config config(plain_config().timing, Mcp2515Filters{});
-  EXPECT_EQ(rig.can.begin(config), Status::bad_argument);
-  config.everything = true;
-  EXPECT_EQ(rig.can.begin(config), Status::ok);
 }
 
 TEST(Begin, WaitsForAChipThatStartsSlowly) {
@@ -321,6 +300,7 @@ constexpr Crystal crystals[] = {
     {"as told", 8'000'000, 8'000'000, Status::ok},
     {"the boards' usual mistake", 8'000'000, 16'000'000, Status::wrong_clock},
     {"the other way round", 16'000'000, 8'000'000, Status::wrong_clock},
+    {"four times too slow", 4'000'000, 16'000'000, Status::wrong_clock},
     {"near, and wrong", 20'000'000, 16'000'000, Status::wrong_clock},
     {"near, and wrong", 16'000'000, 20'000'000, Status::wrong_clock},
     {"near, and wrong", 10'000'000, 8'000'000, Status::wrong_clock},
@@ -328,7 +308,7 @@ constexpr Crystal crystals[] = {
 };
 
 TEST(CheckClock, TellsWhatCrystalIsThere) {
-  for (const std::uint32_t bitrate : {10'000U, 125'000U, 500'000U, 1'000'000U}) {
+  for (const std::uint32_t bitrate : {10'000U, 20'000U, 125'000U, 500'000U, 1'000'000U}) {
     for (const Crystal& row : crystals) {
       SCOPED_TRACE(std::string(row.why) + ": " + std::to_string(row.real_hz) + " told " +
                    std::to_string(row.told_hz) + " at " + std::to_string(bitrate));

@@ -163,6 +163,18 @@ TEST(ReceiveOrder, ASpikeOnTheInterruptLineIsNoFrame) {
   EXPECT_EQ(rig.receive_all(), std::vector{numbered(2)});
 }
 
+TEST(ReceiveOrder, AnInterruptLineThatIsStuckLowIsNoFrame) {
+  Rig<true> rig;
+  rig.begin();
+  rig.peer_sends({numbered(1)});
+  for (int i = 0; i < 100; ++i) {
+    rig.wire.spike_on_interrupt_line();
+    Frame frame{};
+    EXPECT_EQ(rig.can.receive(frame), i == 0 ? Status::ok : Status::empty);
+  }
+  EXPECT_EQ(rig.can.counters().received, 1U);
+}
+
 // --- every interleaving --------------------------------------------------------------------------
 
 /// What the program does over and over until all is received.

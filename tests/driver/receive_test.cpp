@@ -73,9 +73,7 @@ struct AllKinds : TestTraits {
 
 TEST(Receive, EveryKindWhenAskedFor) {
   Rig<false, 4, 4, AllKinds> rig;
-  Mcp2515Config config = plain_config();
-  config.everything = true;
-  rig.begin(config);
+  rig.begin({plain_config().timing, mcp2515_filters_of_everything()});
   const std::vector<Frame> frames{{0x123, FrameKind::standard, 2, {1, 2}},
                                   {0x7FF, FrameKind::standard_remote, 4, {}},
                                   {0x000, FrameKind::standard, 8, {1, 2, 3, 4, 5, 6, 7, 8}},
@@ -297,6 +295,55 @@ TEST(ChipLoss, ASilentLineIsNotBelievedForEver) {
   }
   EXPECT_EQ(calls, 64);
   EXPECT_EQ(rig.can.counters().chip_losses, 1U);
+}
+
+TEST(ChipLoss, AFrameReadFromAChipThatWasResetIsDiscarded) {
+  for (int step = 0; step < 30; ++step) {
+    Rig<true> rig;
+    rig.begin();
+    rig.peer_sends({numbered(0x5A5A5A5A, 8)});
+    int so_far = 0;
+    rig.wire.on_step([&] {
+      if (so_far++ == step) {
+        rig.chip.reset_pin();
+      }
+    });
+    Frame frame{};
+    if (rig.can.receive(frame) == Status::ok) {
+      EXPECT_EQ(frame, numbered(0x5A5A5A5A, 8)) << step;
+    }
+  }
+}
+
+TEST(ChipLoss, TheQueueSurvivesALossThatSendFindsOut) {
+  Rig<false, 0, 4> rig;
+  rig.begin();
+  rig.bus.hold_dominant(true);
+  for (std::uint8_t i = 0; i < 4; ++i) {
+    ASSERT_EQ(rig.can.send(numbered(i), i), Status::ok);
+  }
+  rig.chip.reset_pin();
+  rig.bus.run_for(microseconds(50));
+  EXPECT_EQ(rig.can.send(numbered(4), 4), Status::no_chip);
+  EXPECT_EQ(rig.can.in_flight(), 0);
+  EXPECT_EQ(rig.can.waiting(), 2);
+  rig.bus.hold_dominant(false);
+  rig.bus.run_for(milliseconds(5));
+  ASSERT_EQ(rig.can.begin(plain_config()), Status::ok);
+  for (int i = 0; i < 10; ++i) {
+    ASSERT_EQ(rig.can.poll(), Status::ok);
+    rig.bus.run_for(milliseconds(1));
+  }
+  EXPECT_EQ(rig.peer_received, (std::vector{numbered(2), numbered(3)}));
+  EXPECT_EQ(rig.can.counters().unknown, 2U);
+}
+
+TEST(Send, IsRefusedWhileOnlyListening) {
+  Rig<> rig;
+  Mcp2515Config config = plain_config();
+  config.mode = mcp2515::Mode::listen_only;
+  rig.begin(config);
+  EXPECT_EQ(rig.can.send(numbered(1)), Status::wrong_mode);
 }
 
 TEST(ChipLoss, AFrameReadFromACableThatFellOffIsDiscarded) {

@@ -397,6 +397,19 @@ TEST(Abort, TakesBackWhatHasNotBegun) {
   EXPECT_EQ(rig.can.traits().outcomes.back(), (Outcome{10, TxOutcome::sent}));
 }
 
+TEST(Abort, EndsAlsoForAProgramThatOnlySends) {
+  Rig<> rig;
+  rig.begin();
+  ASSERT_EQ(rig.can.send(numbered(1), 1), Status::ok);
+  rig.can.abort();
+  int tries = 0;
+  while (rig.can.send(numbered(2), 2) == Status::full && tries < 100) {
+    ++tries;
+    rig.bus.run_for(microseconds(20));
+  }
+  EXPECT_LT(tries, 100);
+}
+
 TEST(Abort, OfNothingChangesNothing) {
   SendingRig rig;
   rig.begin();

@@ -53,16 +53,21 @@ MUTATIONS = {
                   "ReceiveOrder.EveryInterleavingWithAQueue"]),
     "look_right_after": (
         "look at the status right after a buffer was freed, with nothing in between",
-        "    transaction.restart();\n    transaction.exchange(static_cast<uint8_t>(Instruction::read_status));",
-        "    transaction.restart();\n    for (int i = 0; i < 30; ++i) {\n      transaction.restart();\n    }\n"
-        "    transaction.exchange(static_cast<uint8_t>(Instruction::read_status));",
-        RECEIVE, ["ReceiveOrder.EveryInterleavingWhilePolling",
-                  "ReceiveOrder.EveryInterleavingWithAnInterruptLine"]),
-    "a_line_that_is_not_low_means_no_frame": (
-        "look at the interrupt line again before it believes that there was a frame",
-        "return running_ && was_full;",
-        "return running_ && (was_full || true);",
-        RECEIVE, ["ReceiveOrder.ASpikeOnTheInterruptLineIsNoFrame"]),
+        "    transaction.restart();\n    looks =",
+        "    for (int i = 0; i < 30; ++i) {\n      transaction.restart();\n    }\n    looks =",
+        RECEIVE, ["ReceiveOrder.EveryInterleavingWhilePolling"]),
+    "a_line_that_is_low_is_no_frame_yet": (
+        "read the status before it believes the interrupt line",
+        "    note(read_quick_status());\n  }\n  return running_",
+        "    if (Port::has_interrupt_line) {\n      quick_ = QuickStatus::rx0;\n    } else {\n"
+        "      note(read_quick_status());\n    }\n  }\n  return running_",
+        RECEIVE, ["ReceiveOrder.ASpikeOnTheInterruptLineIsNoFrame",
+                  "ReceiveOrder.AnInterruptLineThatIsStuckLowIsNoFrame"]),
+    "a_line_that_rises_early_tells_of_a_lost_chip": (
+        "look at the interrupt line before it trusts what it read",
+        "    trusted = !Port::has_interrupt_line || port_.interrupt_line_is_low();",
+        "    trusted = true;",
+        OTHER, ["ChipLoss.AFrameReadFromAChipThatWasResetIsDiscarded"]),
     "a_look_that_went_wrong_is_repeated": (
         "look again when the look was nonsense",
         "quick = running_ ? read_quick_status() : 0;",
@@ -70,9 +75,9 @@ MUTATIONS = {
         RECEIVE, ["ReceiveOrder.IsFoundAgainAfterALookThatWentWrong"]),
     "nothing_is_cleared_that_was_not_read": (
         "leave the chip's receive flags alone",
-        "return running_ && was_full;",
-        "modify_register(Register::canintf, static_cast<uint8_t>(1U << buffer), 0);\n"
-        "  return running_ && was_full;",
+        "  return trusted;",
+        "  modify_register(Register::canintf, static_cast<uint8_t>(1U << buffer), 0);\n"
+        "  return trusted;",
         RECEIVE, ["ReceiveOrder.EveryInterleavingWhilePolling"]),
     "lower_priority_behind_buffer_1": (
         "give a frame that goes to buffer 2 behind one in buffer 1 a lower priority",

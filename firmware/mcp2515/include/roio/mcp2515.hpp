@@ -10,12 +10,13 @@
 ///     roio::Frame frame;
 ///     if (can.receive(frame) == roio::Status::ok) ...
 ///     if (can.send(reply) == roio::Status::full) ...    // try again later
-///     if (can.poll() != roio::Status::ok) can.begin(config);
+///     if (can.poll() != roio::Status::ok) ...           // begin() again
 ///   }
 ///
-/// **When to call.** The chip holds two received frames. Call poll() or receive() at least once in
-/// the time that two frames take on the bus (134 us at 1 Mbit/s, 268 us at 500 kbit/s, without
-/// data), or frames are lost: the chip says so, and it is counted. With an interrupt line a call
+/// **When to call.** The chip holds two received frames. Call poll() (with RxQueue 0: receive()) at
+/// least once in the time that two frames take on the bus, less the time to read one (134 us at 1
+/// Mbit/s, 268 us at 500 kbit/s, without data), or frames are lost: the chip says so, and it is
+/// counted. With an interrupt line a call
 /// costs no SPI while nothing has happened. Not from an interrupt and the main program both.
 ///
 /// **Cost.** For a frame with 8 bytes, in SPI bytes and transactions: received in a run or with an
@@ -48,7 +49,7 @@ namespace roio {
 //   struct PortExample {
 //     static constexpr bool has_interrupt_line = true;
 //     bool interrupt_line_is_low();
-//     uint32_t microseconds();        // free running; only differences are used
+//     uint32_t microseconds();        // free running, wraps at 2^32; only differences are used
 //     class Transaction {             // chip select is low as long as one lives
 //      public:
 //       explicit Transaction(PortExample&);
@@ -71,8 +72,6 @@ struct Mcp2515Config {
   mcp2515::Mode mode = mcp2515::Mode::normal;  ///< normal, listen_only or loopback.
   /// Each frame is tried once, then reported as failed.
   bool one_shot = false;
-  /// Receive every frame of every kind, whatever the filters say. Takes Traits::all_kinds.
-  bool everything = false;
   /// How long begin() waits for the chip to answer: a crystal takes up to some milliseconds.
   uint16_t start_timeout_ms = 20;
 
@@ -153,15 +152,19 @@ class Mcp2515 {
         priority_(),
         token_() {}
 
+  Mcp2515(const Mcp2515&) = delete;
+  Mcp2515& operator=(const Mcp2515&) = delete;
+
   /// Resets the chip and sets it up; what it held is gone (frames that it was to send are reported
   /// as unknown). What waits in the queues stays. May be called again at any time, and must be when
   /// poll() says that the chip is lost. Takes 1 ms when all is well; at most
   /// config.start_timeout_ms for a chip that does not answer, and 50 ms for a bus that is never
   /// idle for 11 bits.
   /// @return ok. bad_timing: the chip cannot run at this timing; bad_argument: filters that cannot
-  ///         keep the order (Mcp2515Filters::in_order), or everything without Traits::all_kinds;
-  ///         after these two nothing was touched. no_chip: no answer, or not what was written.
-  ///         wrong_mode: the mode was not entered (the bus is stuck, or has no transceiver).
+  ///         keep the order (Mcp2515Filters::in_order), or configuration mode; after these two
+  ///         nothing was touched.
+  ///         no_chip: no answer, or not what was written. wrong_mode: the mode was not entered (the
+  ///         bus is stuck, or has no transceiver).
   ROIO_NODISCARD Status begin(const Mcp2515Config& config);
 
   /// Fetches what has come in (with RxQueue 0 that is receive()'s alone), hands over what waits,
@@ -169,8 +172,8 @@ class Mcp2515 {
   /// @return ok; no_chip: the chip was reset or is not there, or begin() has not succeeded yet.
   Status poll();
 
-  /// The oldest frame received.
-  /// @param frame written on ok only.
+  /// The oldest frame received. With a queue, looks at the chip only when the queue is empty.
+  /// @param frame a frame on ok only.
   /// @return ok; empty; no_chip as for poll().
   ROIO_NODISCARD Status receive(Frame& frame);
 
@@ -180,8 +183,8 @@ class Mcp2515 {
   /// @param frame copied.
   /// @param token comes back with the frame's outcome.
   /// @return ok: it will be sent, and reported; full: nothing was stored, try again after poll();
-  ///         bad_argument: an identifier, length or kind that may not be sent; no_chip: begin() has
-  ///         not succeeded, or the chip is lost.
+  ///         bad_argument: an identifier, length or kind that may not be sent; wrong_mode: listen
+  ///         only; no_chip: begin() has not succeeded, or the chip is lost.
   ROIO_NODISCARD Status send(const Frame& frame, uint8_t token = 0);
 
   /// Takes back all frames that are not yet on the wire. Each is reported, as aborted or, if it was
@@ -200,10 +203,12 @@ class Mcp2515 {
 
   /// Finds out whether the oscillator is what `config.timing` takes it for, by sending a frame from
   /// the chip to itself and timing it. Nothing goes to the bus. Ends in configuration mode: begin()
-  /// comes after it. Takes three frames of 131 bits; at most 20 ms and twice as long as they
-  /// should.
+  /// comes after it. Takes three frames of 131 bits and two resets; twelve times as long as these
+  /// should take, and 120 ms, at most.
   /// @param osc_hz what the timing was computed for, 1,000,000 or more.
-  /// @param measured_hz what the oscillator is, to some percent; 0 unless ok or wrong_clock.
+  /// @param measured_hz what the oscillator is, to some percent; 0 when it is slower than one
+  /// twelfth,
+  ///        and unless ok or wrong_clock.
   /// @return ok: within one eighth; wrong_clock; bad_argument: osc_hz too low; else as begin().
   ROIO_NODISCARD Status check_clock(const Mcp2515Config& config, uint32_t osc_hz,
                                     uint32_t& measured_hz);
@@ -252,6 +257,7 @@ class Mcp2515 {
   void pause(uint16_t microseconds);
   bool reset_chip(uint16_t timeout_ms);
   bool configure(const Mcp2515Config& config);
+  void count_what_begin_forgets();
   bool enter_mode(uint8_t control);
   void load_clock_frames();
   uint32_t time_clock_frames(uint32_t limit_us);
@@ -291,7 +297,7 @@ class Mcp2515 {
   uint8_t calls_;        // since the chip was last checked
   bool running_;
   bool fresh_;         // READ STATUS was read in this call
-  bool check_due_;     // frames may have been lost, or the interrupt line tells of an error
+  bool check_due_;     // frames may have been lost
   bool rx1_is_older_;  // of two full receive buffers
   bool aborting_;
   uint8_t pending_;      // what the chip was asked to send, bit for bit TXREQ in READ STATUS

@@ -25,6 +25,7 @@ constexpr uint16_t clock_frame_bits = 131;
 constexpr uint8_t clock_frames = 3;
 constexpr uint32_t slowest_osc_hz = 1000000;  ///< The chip takes 1 to 40 MHz.
 constexpr uint32_t clock_timeout_us = 20000;
+constexpr uint8_t slowest_clock_factor = 12;  ///< 4 MHz told 40, and some more.
 constexpr uint8_t clock_tolerance = 8;  ///< One part in so many; crystals in use are 1 in 4 apart.
 }  // namespace mcp2515
 
@@ -133,8 +134,8 @@ ROIO_MCP2515_MEMBER(bool)::configure(const Mcp2515Config& config) {
   bool same = write_and_compare(Register::rxf0sidh, filters.filter[0], 12);
   same = write_and_compare(Register::rxf3sidh, filters.filter[3], 12) && same;
   same = write_and_compare(Register::rxm0sidh, setup, sizeof setup) && same;
-  const uint8_t rx1 = config.everything ? RxControl::everything : RxControl::by_filters;
-  const uint8_t rx0 = rx1 | RxControl::rollover;
+  const uint8_t rx0 = RxControl::by_filters | RxControl::rollover;
+  const uint8_t rx1 = RxControl::by_filters;
   write_registers(Register::rxb0ctrl, &rx0, 1);
   write_registers(Register::rxb1ctrl, &rx1, 1);
   // These two also tell of frames received.
@@ -166,11 +167,11 @@ ROIO_MCP2515_MEMBER(Status)::begin(const Mcp2515Config& config) {
   if (!is_valid(config.timing)) {
     return Status::bad_timing;
   }
-  if (config.everything ? !Traits::all_kinds : !config.filters.in_order) {
+  if (!config.filters.in_order || config.mode == mcp2515::Mode::configuration) {
     return Status::bad_argument;
   }
   if (running_) {
-    check_chip();  // losses that it knows of are counted before it forgets them
+    count_what_begin_forgets();
   }
   forget_chip();
   if (!reset_chip(config.start_timeout_ms) || !configure(config)) {
@@ -187,6 +188,16 @@ ROIO_MCP2515_MEMBER(Status)::begin(const Mcp2515Config& config) {
   }
   running_ = true;
   return Status::ok;
+}
+
+/// Losses that the chip knows of, and frames that nobody has read.
+ROIO_MCP2515_MEMBER(void)::count_what_begin_forgets() {
+  check_chip();
+  if (running_) {
+    note(read_quick_status());
+    counters_.discarded += (quick_ & QuickStatus::rx0) != 0 ? 1 : 0;
+    counters_.discarded += (quick_ & QuickStatus::rx1) != 0 ? 1 : 0;
+  }
 }
 
 ROIO_MCP2515_MEMBER(Status)::check_clock(const Mcp2515Config& config, uint32_t osc_hz,
@@ -210,11 +221,14 @@ ROIO_MCP2515_MEMBER(Status)::check_clock(const Mcp2515Config& config, uint32_t o
                           config.timing.prescaler * quanta_per_bit(config.timing);
   const uint32_t expected_us = clocks / (osc_hz / 1000U) * 1000U;
   load_clock_frames();
-  const uint32_t elapsed_us = time_clock_frames(mcp2515::clock_timeout_us + 2U * expected_us);
-  const uint8_t configuration =
-      static_cast<uint8_t>(mcp2515::Mode::configuration) | Control::clock_out;
-  if (!enter_mode(configuration) || elapsed_us == 0) {
+  const uint32_t limit_us = mcp2515::clock_timeout_us + mcp2515::slowest_clock_factor * expected_us;
+  const uint32_t elapsed_us = time_clock_frames(limit_us);
+  // Also ends what may still be under way.
+  if (!reset_chip(config.start_timeout_ms) || elapsed_us == 0) {
     return Status::no_chip;
+  }
+  if (elapsed_us >= limit_us) {
+    return Status::wrong_clock;
   }
   const uint32_t measured_khz = clocks * 100U / elapsed_us * 10U;
   const uint32_t told_khz = osc_hz / 1000U;
@@ -290,18 +304,14 @@ ROIO_MCP2515_MEMBER(void)::note(uint8_t quick, bool freed_rx0) {
 
 // --- receiving -----------------------------------------------------------------------------------
 
-/// Whether a frame waits in the chip, as far as is known or can be seen.
+/// Whether a frame waits in the chip, as far as is known or can be seen. A line that is low is no
+/// frame yet: it may be stuck, or a spike.
 ROIO_MCP2515_MEMBER(bool)::find_received() {
-  if (quick_ != 0) {
-    return true;
-  }
-  if (Port::has_interrupt_line) {
-    // Only received frames pull the line, and RXB0 is filled first.
-    quick_ = port_.interrupt_line_is_low() ? QuickStatus::rx0 : 0;
-  } else if (!fresh_) {
+  const bool may_have = !fresh_ && (!Port::has_interrupt_line || port_.interrupt_line_is_low());
+  if (quick_ == 0 && may_have) {
     note(read_quick_status());
   }
-  return quick_ != 0;
+  return running_ && quick_ != 0;
 }
 
 /// Takes the older frame out of the chip. There must be one.
@@ -327,29 +337,38 @@ ROIO_MCP2515_MEMBER(bool)::fetch(Frame& frame) {
 /// longer on the bus than the look does, so at most one can have come in between, and that one went
 /// to RXB0. Nothing may interrupt the two. The look also tells that the chip was there all the
 /// while, and it is the next call's first.
-/// @return false: there was no frame, or the chip was lost meanwhile and it cannot be trusted.
+/// With an interrupt line: a buffer that is full holds it low, so a line that is high before the
+/// buffer is freed tells of a chip that was reset or fell off; one that is high after it, that
+/// nothing more is there, and spares the look.
+/// @return false: the chip was lost meanwhile, or the line says so; the frame cannot be trusted.
 ROIO_MCP2515_MEMBER(bool)::read_rx_buffer(uint8_t buffer, Frame& frame) {
   uint8_t quick = 0;
-  bool was_full = false;
+  bool trusted = true;
+  bool looks = true;
   {
     Transaction transaction(port_);
     read_frame(transaction, buffer, frame);
-    // As long as the buffer is full the line is low; a spike on it made nothing of nothing.
-    was_full = !Port::has_interrupt_line || port_.interrupt_line_is_low();
+    trusted = !Port::has_interrupt_line || port_.interrupt_line_is_low();
     typename Port::Uninterrupted together(port_);
     transaction.restart();
-    transaction.exchange(static_cast<uint8_t>(Instruction::read_status));
-    quick = transaction.exchange(0);
+    looks = !Port::has_interrupt_line || !trusted || port_.interrupt_line_is_low();
+    if (looks) {
+      transaction.exchange(static_cast<uint8_t>(Instruction::read_status));
+      quick = transaction.exchange(0);
+    }
   }
   quick_ = 0;
-  note(quick, buffer == 0);
+  if (looks) {
+    note(quick, buffer == 0);
+  }
   rx1_is_older_ = buffer == 0 && (quick_ & QuickStatus::rx1) != 0;
   // Perhaps both were full for a while, and a third frame was lost.
   check_due_ = check_due_ || (quick_ != 0 && (buffer == 1 || rx1_is_older_));
-  if (!running_) {
+  trusted = trusted && running_;
+  if (!trusted) {
     ++counters_.discarded;
   }
-  return running_ && was_full;
+  return trusted;
 }
 
 /// The buffer's bytes, only as many as the frame has. DLC 9..15 is 8 bytes (ISO 11898-1).
@@ -424,6 +443,10 @@ ROIO_MCP2515_MEMBER(Status)::send(const Frame& frame, uint8_t token) {
   }
   if (!running_) {
     return Status::no_chip;
+  }
+  if ((control_ & mcp2515::Control::mode_mask) ==
+      static_cast<uint8_t>(mcp2515::Mode::listen_only)) {
+    return Status::wrong_mode;
   }
   if (!give_to_chip(frame, token)) {
     // Only the chip knows whether it has room by now.
@@ -500,7 +523,8 @@ ROIO_MCP2515_MEMBER(uint8_t)::choose_slot(bool urgent, uint8_t& level) const {
 
 ROIO_MCP2515_MEMBER(bool)::load(const Frame& frame, uint8_t token) {
   uint8_t level = 0;
-  const uint8_t slot = aborting_ ? mcp2515::no_slot : choose_slot(is_urgent(frame), level);
+  const bool accepts = running_ && !aborting_;
+  const uint8_t slot = accepts ? choose_slot(is_urgent(frame), level) : mcp2515::no_slot;
   if (slot == mcp2515::no_slot) {
     return false;
   }
@@ -549,6 +573,10 @@ ROIO_MCP2515_MEMBER(void)::settle(uint8_t quick) {
       report(token_[slot], outcome_of(slot));
     }
   }
+  if (aborting_ && pending_ == 0) {
+    modify_register(Register::canctrl, mcp2515::Control::abort_all, 0);
+    aborting_ = false;
+  }
 }
 
 /// A request ends by success, unless somebody has asked for less.
@@ -559,6 +587,9 @@ ROIO_MCP2515_MEMBER(TxOutcome)::outcome_of(uint8_t slot) {
     return TxOutcome::sent;
   }
   const uint8_t control = read_register(mcp2515::txbctrl(slot));
+  if ((control & TxControl::fixed) != priority_[slot]) {
+    return TxOutcome::unknown;  // that is no answer of a chip that has ended this request
+  }
   if ((control & (TxControl::lost_arbitration | TxControl::error)) != 0 && one_shot) {
     return TxOutcome::failed;
   }
@@ -599,10 +630,6 @@ ROIO_MCP2515_MEMBER(void)::tend() {
   if (running_ && somebody_waits && !fresh_) {
     note(read_quick_status());
   }
-  if (aborting_ && pending_ == 0) {
-    modify_register(Register::canctrl, mcp2515::Control::abort_all, 0);
-    aborting_ = false;
-  }
   if (running_) {
     pump();
   }
@@ -622,6 +649,9 @@ ROIO_MCP2515_MEMBER(void)::check_chip() {
   const uint8_t errors = values[1];
   calls_ = 0;
   check_due_ = false;
+  if (quick_ == 0) {
+    quick_ = flags & QuickStatus::any_rx;  // also when the interrupt line keeps silent about them
+  }
   if ((flags & Interrupt::tx_any) != Interrupt::tx_any ||
       ((values[2] ^ control_) & Control::mode_mask) != 0 ||
       (values[3] & ~Control::abort_all) != control_) {

@@ -29,7 +29,6 @@ enum class Register : uint8_t {
   canctrl = 0x0F,
   rxf3sidh = 0x10,
   tec = 0x1C,
-  rec = 0x1D,
   rxm0sidh = 0x20,
   cnf3 = 0x28,
   canintf = 0x2C,
@@ -93,16 +92,16 @@ struct TxControl {
   static constexpr uint8_t aborted = 0x40;
   static constexpr uint8_t lost_arbitration = 0x20;
   static constexpr uint8_t error = 0x10;
-  static constexpr uint8_t request = 0x08;
-  static constexpr uint8_t failed = aborted | lost_arbitration | error;
+  /// What an ended request leaves there as it was written: no bit 7, no TXREQ, TXP.
+  static constexpr uint8_t fixed = 0x8B;
 };
 
-/// RXBnCTRL (registers 4-1, 4-2). RXM is 00, by filters, or 11, everything; 01 and 10 are reserved.
+/// RXBnCTRL (registers 4-1, 4-2). RXM is 00, by filters; 11 hands out broken frames, too, and 01
+/// and 10 are reserved.
 struct RxControl {
   static constexpr uint8_t by_filters = 0x00;
-  static constexpr uint8_t everything = 0x60;
   static constexpr uint8_t rollover = 0x04;
-  static constexpr uint8_t settings = everything | rollover;
+  static constexpr uint8_t settings = 0x60 | rollover;
 };
 
 /// SIDL, DLC of a buffer.

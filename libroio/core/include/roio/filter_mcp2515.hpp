@@ -370,6 +370,20 @@ inline Mcp2515Filters mcp2515_filters_of(Address own) {
   return image;
 }
 
+/// The image that lets every frame through, standard and remote ones, too: for a sniffer. By
+/// filters that compare nothing, not by RXM = 11, which also hands out the beginnings of broken
+/// frames.
+inline Mcp2515Filters mcp2515_filters_of_everything() {
+  Mcp2515Filters image;
+  detail::fill(image, 0, 0, 0);
+  // Without EXIDE: standard frames only. The others let extended ones through.
+  image.filter[0][1] = 0;
+  image.filter[2][1] = 0;
+  image.exact = true;
+  image.in_order = true;
+  return image;
+}
+
 }  // namespace roio
 
 #endif
