@@ -31,7 +31,8 @@ void SpiWire::set_fault(Fault fault) {
 }
 
 bool SpiWire::interrupt_line_is_low() {
-  return std::exchange(spike_, false) || (fault_ == Fault::none && !chip_.interrupt_pin());
+  return std::exchange(spike_, false) || line_held_low_ ||
+         (fault_ == Fault::none && !chip_.interrupt_pin());
 }
 
 void SpiWire::clear_faults() {
@@ -39,6 +40,7 @@ void SpiWire::clear_faults() {
   set_bit_flips(0, 0);
   lose_select_in_ = 0;
   spike_ = false;
+  line_held_low_ = false;
 }
 
 void SpiWire::set_bit_flips(double probability, std::uint32_t seed) {

@@ -61,8 +61,7 @@ MUTATIONS = {
         "    note(read_quick_status());\n  }\n  return running_",
         "    if (Port::has_interrupt_line) {\n      quick_ = QuickStatus::rx0;\n    } else {\n"
         "      note(read_quick_status());\n    }\n  }\n  return running_",
-        RECEIVE, ["ReceiveOrder.ASpikeOnTheInterruptLineIsNoFrame",
-                  "ReceiveOrder.AnInterruptLineThatIsStuckLowIsNoFrame"]),
+        RECEIVE, ["ReceiveOrder.AnInterruptLineThatIsStuckLowIsNoFrame"]),
     "a_line_that_rises_early_tells_of_a_lost_chip": (
         "look at the interrupt line before it trusts what it read",
         "    trusted = !Port::has_interrupt_line || port_.interrupt_line_is_low();",

@@ -48,6 +48,8 @@ class SpiWire {
 
   /// The next look at the interrupt line finds it low.
   void spike_on_interrupt_line() { spike_ = true; }
+  /// The interrupt line is at ground, whatever the chip says.
+  void hold_interrupt_line_low(bool hold) { line_held_low_ = hold; }
   /// No fault any more, nor one to come.
   void clear_faults();
 
@@ -77,6 +79,7 @@ class SpiWire {
   std::mt19937 generator_;
   std::uint32_t lose_select_in_ = 0;  // 0: not at all
   bool spike_ = false;
+  bool line_held_low_ = false;
   bool selected_ = false;
   bool first_byte_ = false;
   std::uint64_t bytes_ = 0;
