@@ -154,6 +154,7 @@ class Mcp2515 {
 
   Mcp2515(const Mcp2515&) = delete;
   Mcp2515& operator=(const Mcp2515&) = delete;
+  ~Mcp2515() = default;
 
   /// Resets the chip and sets it up; what it held is gone (frames that it was to send are reported
   /// as unknown). What waits in the queues stays. May be called again at any time, and must be when
