@@ -258,6 +258,22 @@ inline uint32_t shared_mask(const FilterRule* rules, uint8_t count, uint8_t seco
   return mask;
 }
 
+/// Copies a program's rules to be shared out: one at least, and no more than a search looks at.
+/// @param rules room for Capacity of them, and for one.
+/// @return how many there are.
+template <uint8_t Capacity>
+uint8_t rules_to_fit(const FilterProgram<Capacity>& program, FilterRule* rules) {
+  uint8_t count = 0;
+  for (const FilterRule& rule : program) {
+    rules[count++] = rule;
+  }
+  if (count == 0) {
+    rules[count++] = nobody();
+  }
+  return Capacity > Mcp2515Search::max_rules ? shorten(rules, count, Mcp2515Search::max_rules)
+                                             : count;
+}
+
 }  // namespace detail
 
 /// Fits a program to the chip. Never rejects what the program accepts; where six filters behind two
@@ -270,16 +286,7 @@ inline uint32_t shared_mask(const FilterRule* rules, uint8_t count, uint8_t seco
 template <uint8_t Capacity>
 Mcp2515Filters fit_mcp2515(const FilterProgram<Capacity>& program) {
   FilterRule rules[Capacity == 0 ? 1 : Capacity];
-  uint8_t count = 0;
-  for (const FilterRule& rule : program) {
-    rules[count++] = rule;
-  }
-  if (count == 0) {
-    rules[count++] = detail::nobody();
-  }
-  if (Capacity > detail::Mcp2515Search::max_rules) {
-    count = detail::shorten(rules, count, detail::Mcp2515Search::max_rules);
-  }
+  const uint8_t count = detail::rules_to_fit(program, rules);
   const detail::Mcp2515Search search(rules, count);
 
   FilterRule slots[Mcp2515Filters::filter_count];
@@ -322,16 +329,7 @@ Mcp2515Filters fit_mcp2515(const FilterProgram<Capacity>& program) {
 template <uint8_t Capacity>
 Mcp2515Filters fit_mcp2515_in_order(const FilterProgram<Capacity>& program) {
   FilterRule rules[Capacity == 0 ? 1 : Capacity];
-  uint8_t count = 0;
-  for (const FilterRule& rule : program) {
-    rules[count++] = rule;
-  }
-  if (count == 0) {
-    rules[count++] = detail::nobody();
-  }
-  if (Capacity > detail::Mcp2515Search::max_rules) {
-    count = detail::shorten(rules, count, detail::Mcp2515Search::max_rules);
-  }
+  const uint8_t count = detail::rules_to_fit(program, rules);
   // Rule 0 is in the first filter: the other half of the ways are the same with names changed. Two
   // filters accept twice as much as one behind the same mask.
   uint8_t best = 0;
