@@ -82,7 +82,7 @@ TEST(Header, EachFieldAtZeroAtItsLargestAndOnePast) {
 
 template <typename Field>
 void expect_every_value_stays_in_its_field() {
-  for (std::uint32_t value = 0; value <= Field::max(); ++value) {
+  for (std::uint32_t value = 0; value <= Field::largest(); ++value) {
     const std::uint32_t id = Field::put(value);
     ASSERT_EQ(id & ~Field::mask(), 0U);
     ASSERT_EQ(id >> Field::lsb, value);
@@ -91,7 +91,7 @@ void expect_every_value_stays_in_its_field() {
     ASSERT_EQ(pack_id(unpack_id(id)), id);
     ASSERT_EQ(pack_id(unpack_id(id | (id_mask & ~Field::mask()))), id | (id_mask & ~Field::mask()));
   }
-  EXPECT_EQ(Field::put(Field::max() + 1U), 0U);
+  EXPECT_EQ(Field::put(Field::largest() + 1U), 0U);
 }
 
 TEST(Header, EveryValueOfEveryField) {

@@ -196,6 +196,8 @@ class Mcp2515 {
   uint8_t in_flight() const {
     return static_cast<uint8_t>(((pending_ >> 2) & 1U) + ((pending_ >> 4) & 1U) + (pending_ >> 6));
   }
+  /// How many received frames receive() has without looking at the chip.
+  uint8_t fetched() const { return rx_queue_.size(); }
   /// How many wait for the chip.
   uint8_t waiting() const { return tx_queue_.size(); }
 

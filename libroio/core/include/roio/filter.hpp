@@ -153,7 +153,7 @@ Status add_for_classes(FilterProgram<Capacity>& program, const FilterRule& rule,
   if ((classes.bits & 0x0FU) == 0x0FU) {
     return program.add(rule);
   }
-  for (uint8_t c = 0; c <= uint8_t{ClassField::max()}; ++c) {
+  for (uint8_t c = 0; c <= uint8_t{ClassField::largest()}; ++c) {
     if (!classes.has(static_cast<MessageClass>(c))) {
       continue;
     }

@@ -46,10 +46,10 @@ struct IdField {
   static_assert(Width > 0 && Lsb + Width <= 29, "a field lies in bits 28..0");
   static constexpr uint8_t lsb = Lsb;
   static constexpr uint8_t width = Width;
-  static constexpr uint32_t max() { return (UINT32_C(1) << Width) - 1U; }
-  static constexpr uint32_t mask() { return max() << Lsb; }
-  static constexpr uint32_t put(uint32_t value) { return (value & max()) << Lsb; }
-  static constexpr uint32_t get(uint32_t id) { return (id >> Lsb) & max(); }
+  static constexpr uint32_t largest() { return (UINT32_C(1) << Width) - 1U; }
+  static constexpr uint32_t mask() { return largest() << Lsb; }
+  static constexpr uint32_t put(uint32_t value) { return (value & largest()) << Lsb; }
+  static constexpr uint32_t get(uint32_t id) { return (id >> Lsb) & largest(); }
 };
 
 using PriorityField = IdField<28, 1>;
@@ -74,7 +74,7 @@ static_assert(PriorityField::width + ClassField::width + DestinationSubnetField:
 /// Whether every field is in range for sending: subnets 0..31, source node 0..254, class not
 /// reserved.
 constexpr bool is_valid(const Header& header) {
-  return static_cast<uint8_t>(header.priority) <= PriorityField::max() &&
+  return static_cast<uint8_t>(header.priority) <= PriorityField::largest() &&
          static_cast<uint8_t>(header.message_class) <
              static_cast<uint8_t>(MessageClass::reserved) &&
          is_valid_destination(header.destination) && is_valid_source(header.source);
