@@ -128,6 +128,10 @@ bool CanBus::quiet() const {
   });
 }
 
+bool CanBus::is_idle(const Domain* next) const {
+  return next == nullptr || (!next->sampling && quiet());
+}
+
 // Nobody keeps time on an idle bus: whoever starts next, starts a bit right then, but for the bit
 // that is not over yet.
 void CanBus::skip_to(SimTime time) {
@@ -145,12 +149,22 @@ void CanBus::run_until(SimTime time) {
   if (within_bit_) {
     throw std::logic_error("the bus runs already: a controller's client must not run it");
   }
+  const SimTime outer_end = std::exchange(run_end_, std::max(time, now_));
+  try {
+    run_to(time);
+  } catch (...) {
+    run_end_ = outer_end;
+    throw;
+  }
+  run_end_ = outer_end;
+}
+
+void CanBus::run_to(SimTime time) {
   for (;;) {
-    run_actions();
-    const SimTime limit =
-        std::max(now_, actions_.empty() ? time : std::min(time, actions_.front().time));
+    run_due();
+    const SimTime limit = std::max(now_, std::min(time, next_call().value_or(time)));
     Domain* const domain = next_domain();
-    const bool idle = domain == nullptr || (!domain->sampling && quiet());
+    const bool idle = is_idle(domain);
     if (!idle && domain->next() < limit) {
       now_ = std::max(now_, domain->next());
       step(*domain);
@@ -160,10 +174,52 @@ void CanBus::run_until(SimTime time) {
       skip_to(limit);
     }
     now_ = limit;
-    if (actions_.empty() || actions_.front().time > now_) {
+    if (next_call().value_or(SimTime::max()) > now_) {
       return;
     }
   }
+}
+
+void CanBus::run_due() {
+  for (;;) {
+    run_actions();
+    const auto due = std::find_if(companions_.begin(), companions_.end(),
+                                  [this](const auto* c) { return c->next && *c->next <= now_; });
+    if (due == companions_.end()) {
+      return;
+    }
+    (*due)->step();
+  }
+}
+
+std::optional<SimTime> CanBus::next_call() const {
+  std::optional<SimTime> first;
+  if (!actions_.empty()) {
+    first = actions_.front().time;
+  }
+  for (const Companion* const companion : companions_) {
+    if (companion->next && (!first || *companion->next < *first)) {
+      first = companion->next;
+    }
+  }
+  return first;
+}
+
+SimTime CanBus::quiet_until(const Companion& companion) const {
+  SimTime end = run_end_;
+  if (!actions_.empty()) {
+    end = std::min(end, actions_.front().time);
+  }
+  for (const Companion* const other : companions_) {
+    if (other != &companion && other->next) {
+      end = std::min(end, *other->next + other->reach);
+    }
+  }
+  if (end <= now_) {
+    return now_;
+  }
+  const Domain* const domain = next_domain();
+  return is_idle(domain) ? end : std::max(now_, std::min(end, domain->next()));
 }
 
 // --- one bit -------------------------------------------------------------------------------------

@@ -73,7 +73,7 @@ struct AllKinds : TestTraits {
 
 TEST(Receive, EveryKindWhenAskedFor) {
   Rig<false, 4, 4, AllKinds> rig;
-  rig.begin({plain_config().timing, mcp2515_filters_of_everything()});
+  rig.begin({plain_timing, mcp2515_filters_of_everything()});
   const std::vector<Frame> frames{{0x123, FrameKind::standard, 2, {1, 2}},
                                   {0x7FF, FrameKind::standard_remote, 4, {}},
                                   {0x000, FrameKind::standard, 8, {1, 2, 3, 4, 5, 6, 7, 8}},
@@ -340,9 +340,7 @@ TEST(ChipLoss, TheQueueSurvivesALossThatSendFindsOut) {
 
 TEST(Send, IsRefusedWhileOnlyListening) {
   Rig<> rig;
-  Mcp2515Config config = plain_config();
-  config.mode = mcp2515::Mode::listen_only;
-  rig.begin(config);
+  rig.begin(plain_config(mcp2515::Mode::listen_only));
   EXPECT_EQ(rig.can.send(numbered(1)), Status::wrong_mode);
 }
 

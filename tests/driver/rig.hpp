@@ -80,9 +80,11 @@ struct TestTraits : Mcp2515Traits {
 };
 
 template <std::uint32_t BitrateBps = 500'000>
-inline Mcp2515Config plain_config() {
-  return {bit_timing<16'000'000, BitrateBps>(), mcp2515_filters_of(own)};
+inline Mcp2515Config plain_config(mcp2515::Mode mode = mcp2515::Mode::normal,
+                                  bool one_shot = false) {
+  return {bit_timing<16'000'000, BitrateBps>(), mcp2515_filters_of(own), mode, one_shot};
 }
+constexpr BitTiming plain_timing = bit_timing<16'000'000, 500'000>();
 
 struct RigOptions {
   std::uint32_t bitrate_bps = 500'000;

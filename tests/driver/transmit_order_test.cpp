@@ -2,10 +2,10 @@
 // of it is told truly.
 //
 // tests/mutation takes the driver's rules for that away one at a time, and sees these tests fail:
-//   buffer 2 behind buffer 1 takes a lower priority      TransmitTrouble: contention
-//   at the lowest, the chip runs empty first             ManyInARow
+//   the second frame goes behind the first               TransmitTrouble: contention
+//   buffer 1 waits until buffer 0 is empty, too          ManyInARow
 //   a buffer that is pending is left alone               ManyInARow
-//   buffer 0 is for urgent frames                        AnUrgentFrameIsNotHeldUp...
+//   buffer 2 is for urgent frames                        AnUrgentFrameIsNotHeldUp...
 //   urgent frames queue ahead of normal ones, and        UrgentFramesKeepTheirOrderAmongThemselves
 //   behind urgent ones
 //   a frame waits behind the queue                       TransmitTrouble: none
@@ -173,7 +173,7 @@ TEST(TransmitOrder, WithBufferZeroAlone) {
             (std::vector<std::uint32_t>{0, 100, 1, 2, 3, 4, 5, 6, 7, 8, 9}));
 }
 
-TEST(TransmitOrder, ABusyBusIsFilledButForOneGapInSix) {
+TEST(TransmitOrder, ABusyBusIsFilledButForOneGapInTwo) {
   SendingRig rig;
   rig.begin();
   constexpr std::uint32_t count = 600;
@@ -214,9 +214,7 @@ class TransmitTrouble : public testing::TestWithParam<Trouble> {
   }
 
   void begin() {
-    Mcp2515Config config = plain_config();
-    config.one_shot = GetParam().one_shot;
-    rig_.begin(config);
+    rig_.begin(plain_config(mcp2515::Mode::normal, GetParam().one_shot));
     rig_.bus.set_bit_errors(GetParam().bit_errors, static_cast<std::uint32_t>(generator_()));
     if (GetParam().contention) {
       rig_.peer.on_sent([this](const Frame&) { contend(); });

@@ -1,4 +1,20 @@
-/// Roio: a robot's nervous system on CAN, for Arduinos with an MCP2515.
+/// Roio: a robot's nervous system on CAN, for Arduinos with an MCP2515 controller.
+///
+///   #include <Roio.h>
+///
+///   RoioOn<10> roio;  // chip select on pin 10; or RoioOn<10, 2> with INT on pin 2
+///
+///   void loop() {
+///     if (!roio.running() && roio.begin(500, 2, 0) != Roio::Status::ok) {
+///       return;  // no chip yet: try again
+///     }
+///     Roio::Message message;
+///     if (roio.receive(message) == Roio::Status::ok) { ... }
+///   }
+///
+/// Roio roio(10) is the same as in the library of 2014, with its calls. All names that a sketch
+/// needs are members of class Roio: Roio::Message, Roio::Status::ok, Roio::Address{0, 2}.
+/// The reference is roio/arduino_node.hpp, roio/arduino_message.hpp and roio/arduino_classic.hpp.
 #ifndef ROIO_H
 #define ROIO_H
 
@@ -7,19 +23,26 @@
 #include <stdint.h>
 
 #ifdef ROIO_STATUS_HPP
-#error "Include Roio.h alone, or before all other files of Roio"
+#error "Include Roio.h before all other files of Roio"
 #endif
 
 // A sketch calls its node `roio`, and no namespace may have that name beside it. So in sketches the
-// library's namespace has another one, and all that a sketch needs is a member of class Roio:
-// Roio::Message, Roio::Status::ok.
+// library's namespace has another one.
 #define roio roio_library
-#include <roio/arduino_node.hpp>
+#include <roio/arduino_classic.hpp>
 
-class Roio : public roio::ArduinoNode<roio::ArduinoOptions> {
- public:
-  using ArduinoNode::ArduinoNode;
-};
+/// Roio roio(10);
+using Roio = roio::ClassicNode;
+
+/// What RoioOn<> leaves in or out: derive from it, and change what differs.
+using RoioOptions = roio::ArduinoOptions;
+
+/// A node whose pins are known when compiling, which is smaller and faster: RoioOn<10> roio;
+/// @tparam InterruptPin where the chip's INT is connected, if it is: then a call that finds nothing
+///         costs no SPI.
+template <uint8_t ChipSelectPin, int InterruptPin = -1, typename Options = RoioOptions>
+using RoioOn = roio::ArduinoNode<
+    roio::ArduinoPort<roio::FixedPin<ChipSelectPin>, roio::PinOrNone<InterruptPin>>, Options>;
 #undef roio
 
 #endif

@@ -2,59 +2,63 @@
 #ifndef ROIO_ARDUINO_NODE_HPP
 #define ROIO_ARDUINO_NODE_HPP
 
+#include <roio/arduino_message.hpp>
 #include <roio/arduino_port.hpp>
 #include <roio/mcp2515.hpp>
-#include <roio/message.hpp>
 
 namespace roio {
 
 /// What a node has besides the least. Derive from it, change what differs, and give it to
 /// RoioWith<>.
 struct ArduinoOptions {
-  /// Messages fetched ahead from the chip, which holds two itself; 1..127, 14 bytes each.
-  static constexpr uint8_t rx_queue = 1;
-  /// Messages that wait for the chip, which holds two and an urgent one itself; 0..127, 15 bytes
+  /// Messages that wait for the chip, which holds two and an urgent one itself; 0..127, 13 bytes
   /// each.
   static constexpr uint8_t tx_queue = 0;
-  /// Whether the chip's INT is connected to a pin, the constructor's second argument: then a call
-  /// that finds nothing costs no SPI.
-  static constexpr bool interrupt_pin = false;
+  /// Messages fetched ahead by poll(); the chip holds two, and the node one; 0..127, 13 bytes each.
+  static constexpr uint8_t rx_queue = 0;
   /// For chips before revision B2, see docs/driver.md.
   static constexpr bool only_buffer_0 = false;
+  /// Whether errors on the bus are counted, and the chip is looked at more closely.
+  static constexpr bool diagnoses = false;
+  /// Whether receive() hands out every frame that the filters let through, of other classes and of
+  /// other protocols, too.
+  static constexpr bool every_frame = false;
 };
 
-template <typename Options>
+/// @tparam Port an ArduinoPort.
+template <typename Port, typename Options>
 class ArduinoNode {
-  struct DriverTraits : Mcp2515Traits {
+  struct Traits : Mcp2515Traits {
     static constexpr bool only_buffer_0 = Options::only_buffer_0;
+    static constexpr bool diagnoses = Options::diagnoses;
+    static constexpr bool all_kinds = Options::every_frame;
+    /// Messages, from somebody who can be answered.
+    static bool wants(const Mcp2515Frame& frame) {
+      return Mcp2515Traits::wants(frame) && mcp2515::is_message(frame);
+    }
   };
-  using Driver = Mcp2515<ArduinoPort<Options::interrupt_pin>, Options::rx_queue, Options::tx_queue,
-                         DriverTraits>;
+
+ protected:
+  using Driver = Mcp2515<Port, Options::rx_queue, Options::tx_queue, Traits>;
 
  public:
   // In a sketch everything has its name from here, since `roio` is what a sketch calls its node.
   using Address = roio::Address;
   using BitTiming = roio::BitTiming;
   using Counters = typename Driver::Counters;
-  using Filters = Mcp2515Filters;
+  using Frame = roio::Frame;
+  using FrameKind = roio::FrameKind;
+  using Filters = Mcp2515FilterPair;
   using Interest = roio::Interest;
-  using Message = roio::Message;
+  using Message = ArduinoMessage;
   using MessageClass = roio::MessageClass;
   using Mode = mcp2515::Mode;
   using Priority = roio::Priority;
   using State = Mcp2515State;
   using Status = roio::Status;
 
-  explicit ArduinoNode(uint8_t chip_select_pin, uint8_t interrupt_pin = 0)
-      : driver_(chip_select_pin, interrupt_pin),
-        own_(),
-        was_broadcast_(false),
-        lastSubnet(0),
-        lastAddress(0),
-        lastLength(0),
-        lastData() {}
-  /// For `Roio roio = Roio(10);`: takes over the pins, before begin() only.
-  ArduinoNode(ArduinoNode&& other) : ArduinoNode(other.driver_.port()) {}
+  template <typename... Pin>
+  explicit constexpr ArduinoNode(Pin... pin) : driver_(pin...), own_{0, 0} {}
 
   // --- beginning ---------------------------------------------------------------------------------
 
@@ -65,13 +69,14 @@ class ArduinoNode {
     return bit_timing<OscHz, BitrateBps>();
   }
 
-  /// Starts the chip, or starts it again. Takes 1 ms when all is well, 60 ms at most.
-  /// @return ok; bad_argument: no valid address (subnet 0..31, node 0..254); bad_timing; no_chip;
-  ///         wrong_mode. As Mcp2515::begin().
-  Status begin(const BitTiming& timing, Address own, Mode mode = Mode::normal) {
-    return begin(timing, own, mcp2515_filters_of(own), mode);
+  /// Starts the chip, or starts it again. Takes 1 ms when all is well, 60 ms at most, or twice that
+  /// on a bus that is never idle.
+  /// @return ok; bad_argument: no valid address (subnet 0..31, node 0..254), or a mode that is none;
+  ///         bad_timing; no_chip; wrong_mode. As Mcp2515::begin().
+  ROIO_IN_LINE Status begin(const BitTiming& timing, Address own, Mode mode = Mode::normal) {
+    return begin_plain(mcp2515::Cnf::word(timing), own, mode);
   }
-  /// With filters of one's own: of an Interest (filtersOf()), or everything().
+  /// With filters of one's own: filtersOf() an Interest, or everything().
   Status begin(const BitTiming& timing, Address own, const Filters& filters,
                Mode mode = Mode::normal) {
     if (!is_valid_source(own)) {
@@ -79,9 +84,7 @@ class ArduinoNode {
     }
     own_ = own;
     driver_.port().begin();
-    Mcp2515Config config(timing, filters);
-    config.mode = mode;
-    return driver_.begin(config);
+    return driver_.begin(Mcp2515Config(timing, filters, mode));
   }
   static Filters everything() { return mcp2515_filters_of_everything(); }
   /// The filters for an Interest, up to 8 rules. When `exact` is false the chip lets through more
@@ -91,10 +94,14 @@ class ArduinoNode {
     Filters filters = mcp2515_filters_of(interest.own);
     if (compile(interest, program) == Status::ok) {
       filters = fit_mcp2515_in_order(program);
-    } else {
-      filters.in_order = false;  // begin() refuses it
     }
     return filters;
+  }
+
+  /// As in the library of 2014, and with its bit timing.
+  /// @param kbps 1000, 500, 250, 125 or 10, with a 16 MHz crystal.
+  ROIO_IN_LINE Status begin(uint16_t kbps, uint8_t address, uint8_t subnet) {
+    return begin_plain(original_cnf(kbps), Address{subnet, address}, Mode::normal);
   }
 
   // --- messages ----------------------------------------------------------------------------------
@@ -105,35 +112,46 @@ class ArduinoNode {
   Status poll() { return driver_.poll(); }
 
   /// The oldest message that has come.
+  /// @param message one on ok only; else anything.
   /// @return ok; empty; no_chip as poll().
-  ROIO_NODISCARD Status receive(Message& message) {
-    Frame frame;
-    Status status = driver_.receive(frame);
-    if (status == Status::ok) {
-      status = to_message(frame, message);
-    }
-    return status;
-  }
+  ROIO_NODISCARD Status receive(Message& message) { return driver_.receive(message.frame()); }
 
-  /// Sends a message; this node is its source. Never waits.
+  /// Sends a message. Never waits.
+  /// @param message its source becomes this node.
   /// @return ok: it will be sent; full: try again after the next poll() or receive();
   ///         bad_argument: subnet above 31, length above 8; no_chip; wrong_mode: listening only.
-  ROIO_NODISCARD Status send(Address destination, const uint8_t* data, uint8_t length,
-                             Priority priority = Priority::normal) {
-    Message message;
-    message.header = Header{priority, MessageClass::message, destination, own_};
-    message.length = length;
-    for (uint8_t i = 0; i < max_data_length; ++i) {
-      message.data[i] = i < length ? data[i] : 0;
+  ROIO_NODISCARD Status send(Message& message) {
+    if (!mcp2515::can_be_sent(message.frame())) {
+      return Status::bad_argument;
     }
-    Frame frame;
-    const Status status = to_frame(message, frame);
-    return status == Status::ok ? driver_.send(frame) : status;
+    mcp2515::put_source(own_, message.frame());
+    return driver_.send(message.frame());
   }
+  ROIO_NODISCARD Status send(Message&& message) { return send(message); }
 
-  const Counters& counters() const { return driver_.counters(); }
-  State state() const { return driver_.state(); }
+  /// Any frame as it is on the bus, with Options::every_frame.
+  ROIO_NODISCARD Status receive(Frame& frame) { return driver_.receive(frame); }
+  /// @param frame sent as it is: what it has for a source, too.
+  ROIO_NODISCARD Status send(const Frame& frame) { return driver_.send(frame); }
+
+  /// Everybody in a subnet, as a destination.
+  static constexpr Address everybody(uint8_t subnet) { return broadcast_of(subnet); }
+
+  // --- what goes on ------------------------------------------------------------------------------
+
+  /// Whether the chip is at work; if not, begin() again.
   bool running() const { return driver_.running(); }
+  const Counters& counters() const { return driver_.counters(); }
+  /// How many messages are in the receive queue.
+  uint8_t fetched() const { return driver_.fetched(); }
+  /// How many messages wait in the send queue, and in the chip.
+  uint8_t waiting() const { return static_cast<uint8_t>(driver_.waiting() + driver_.in_flight()); }
+  /// Asks the chip: active, warning (an error counter above 95), passive (above 127) or bus_off.
+  State state() { return driver_.read_state(); }
+  /// The chip's error counters.
+  void errorCounters(uint8_t& transmit, uint8_t& receive) {
+    driver_.read_error_counters(transmit, receive);
+  }
   /// Whether the crystal is what the timing takes it for: Mcp2515::check_clock(). begin() must
   /// follow.
   Status checkClock(const BitTiming& timing, uint32_t osc_hz, uint32_t& measured_hz) {
@@ -141,66 +159,45 @@ class ArduinoNode {
     return driver_.check_clock(Mcp2515Config(timing, mcp2515_filters_of(own_)), osc_hz,
                                measured_hz);
   }
-  void errorCounters(uint8_t& transmit, uint8_t& receive) {
-    driver_.read_error_counters(transmit, receive);
+  /// Another mode: Mcp2515::change_mode().
+  ROIO_NODISCARD Status changeMode(Mode mode) { return driver_.change_mode(mode); }
+
+ protected:
+  // Chosen among numbers, which a compiler sees through.
+  static ROIO_IN_LINE uint32_t original_cnf(uint16_t kbps) {
+    constexpr uint32_t at_1000 = mcp2515::Cnf::word(original_bit_timing(1000));
+    constexpr uint32_t at_500 = mcp2515::Cnf::word(original_bit_timing(500));
+    constexpr uint32_t at_250 = mcp2515::Cnf::word(original_bit_timing(250));
+    constexpr uint32_t at_125 = mcp2515::Cnf::word(original_bit_timing(125));
+    constexpr uint32_t at_10 = mcp2515::Cnf::word(original_bit_timing(10));
+    return kbps == 1000  ? at_1000
+           : kbps == 500 ? at_500
+           : kbps == 250 ? at_250
+           : kbps == 125 ? at_125
+           : kbps == 10  ? at_10
+                         : 0;
+  }
+  ROIO_IN_LINE Status begin_plain(uint32_t cnf, Address own, Mode mode) {
+    if (!is_valid_source(own) || mode == Mode::configuration) {
+      return Status::bad_argument;
+    }
+    if (cnf == 0) {
+      return Status::bad_timing;
+    }
+    own_ = own;
+    driver_.port().begin();
+    constexpr uint32_t mask = mcp2515_filters_of(Address{0, 0}).mask;
+    const Mcp2515Config config(cnf, mask, mcp2515_filters_of(own).filter[0],
+                               mcp2515_filters_of(own).filter[1],
+                               mcp2515::Control::of(mode, false));
+    return driver_.start(config);
   }
 
-  // --- as in the library of 2014 -----------------------------------------------------------------
-
-  /// @param kbps 1000, 500, 250, 125 or 10, with a 16 MHz crystal.
-  Status begin(uint16_t kbps, uint8_t address, uint8_t subnet) {
-    return begin(original_bit_timing(kbps), Address{subnet, address});
-  }
-  /// How many messages read() has.
-  uint8_t available() {
-    driver_.poll();
-    return driver_.fetched();
-  }
-  /// The oldest message, into the last... below.
-  /// @return its first byte; 0 when it has none, or there is no message.
-  uint8_t read() {
-    Message message;
-    if (receive(message) != Status::ok) {
-      lastLength = 0;
-      return 0;
-    }
-    lastSubnet = message.header.source.subnet;
-    lastAddress = message.header.source.node;
-    was_broadcast_ = message.header.destination.node == broadcast_node;
-    lastLength = message.length;
-    for (uint8_t i = 0; i < max_data_length; ++i) {
-      lastData[i] = message.data[i];
-    }
-    return lastData[0];
-  }
-  bool isBroadcast() const { return was_broadcast_; }
-  Status write(uint8_t data, uint8_t address, uint8_t subnet) {
-    return write(&data, 1, address, subnet);
-  }
-  Status write(const uint8_t* data, uint8_t length, uint8_t address, uint8_t subnet) {
-    return send(Address{subnet, address}, data, length);
-  }
-  Status broadcast(uint8_t data, uint8_t subnet) { return broadcast(&data, 1, subnet); }
-  Status broadcast(const uint8_t* data, uint8_t length, uint8_t subnet) {
-    return write(data, length, broadcast_node, subnet);
-  }
-  uint8_t status() { return 0; }
-  Status changeMode(uint8_t) { return Status::ok; }
-  void reset() {}
+ protected:
+  Driver driver_;
 
  private:
-  explicit ArduinoNode(ArduinoPort<Options::interrupt_pin>& port)
-      : ArduinoNode(port.chip_select_pin(), port.interrupt_pin()) {}
-
-  Driver driver_;
   Address own_;
-  bool was_broadcast_;
-
- public:
-  uint8_t lastSubnet;   ///< Who sent the message that read() returned last.
-  uint8_t lastAddress;  ///< And which of that subnet.
-  uint8_t lastLength;   ///< 0..8.
-  uint8_t lastData[max_data_length];
 };
 
 }  // namespace roio

@@ -2,76 +2,119 @@
 ///
 /// SPI is shared as Arduino's rules want it: each access is a transaction of its own, so other
 /// devices on the same SPI, and interrupts that use it (SPI.usingInterrupt()), are safe.
-/// With Roio.h the only file that knows Arduino. Include Roio.h, not this.
+/// With Roio.h and the pins the only files that know Arduino. Include Roio.h, not this.
 #ifndef ROIO_ARDUINO_PORT_HPP
 #define ROIO_ARDUINO_PORT_HPP
 
 #include <Arduino.h>
 #include <SPI.h>
 
+// ROIO_PORTABLE_PINS: Arduino's functions on an AVR, too, for comparison.
+#if defined(__AVR__) && !defined(ROIO_PORTABLE_PINS)
+#include <roio/arduino_pins_avr.hpp>
+#else
+#include <roio/arduino_pins.hpp>
+#endif
+
 namespace roio {
 
-/// @tparam WithLine whether the chip's INT is connected to a pin.
-template <bool WithLine>
+/// The most that the chip takes.
+constexpr uint32_t spi_hz = 10000000;
+
+class NoPin {
+ public:
+  static constexpr bool is_used = false;
+  static void begin_input() {}
+  static bool is_low() { return false; }
+};
+
+namespace detail {
+template <int Number>
+struct PinOrNone {
+  using Type = FixedPin<static_cast<uint8_t>(Number)>;
+};
+template <>
+struct PinOrNone<-1> {
+  using Type = NoPin;
+};
+}  // namespace detail
+
+/// FixedPin<Number>; NoPin for -1.
+template <int Number>
+using PinOrNone = typename detail::PinOrNone<Number>::Type;
+
+/// @tparam ChipSelect FixedPin or SetPin. @tparam Interrupt FixedPin or NoPin.
+template <typename ChipSelect, typename Interrupt>
 class ArduinoPort {
  public:
-  static constexpr bool has_interrupt_line = WithLine;
+  static constexpr bool has_interrupt_line = Interrupt::is_used;
 
   /// Touches no hardware: it may be called before Arduino has set up its own.
-  ArduinoPort(uint8_t chip_select_pin, uint8_t interrupt_pin)
-      : chip_select_pin_(chip_select_pin), interrupt_pin_(interrupt_pin) {}
+  template <typename... Arguments>
+  explicit constexpr ArduinoPort(Arguments... pin) : chip_select_(pin...) {}
 
   void begin() {
-    digitalWrite(chip_select_pin_, HIGH);
-    pinMode(chip_select_pin_, OUTPUT);
-    if (WithLine) {
-      pinMode(interrupt_pin_, INPUT_PULLUP);
-    }
-    SPI.begin();
+    chip_select_.begin_output_high();
+    Interrupt::begin_input();
+    begin_spi();
   }
 
-  uint8_t chip_select_pin() const { return chip_select_pin_; }
-  uint8_t interrupt_pin() const { return interrupt_pin_; }
+  const ChipSelect& chip_select() const { return chip_select_; }
 
-  bool interrupt_line_is_low() { return digitalRead(interrupt_pin_) == LOW; }
+  bool interrupt_line_is_low() { return Interrupt::is_low(); }
+  void pause(uint16_t microseconds) { delayMicroseconds(microseconds); }
   uint32_t microseconds() { return micros(); }
 
   class Transaction {
    public:
-    explicit Transaction(ArduinoPort& port) : pin_(port.chip_select_pin_) {
-      SPI.beginTransaction(SPISettings(10000000, MSBFIRST, SPI_MODE0));
-      digitalWrite(pin_, LOW);
+    ROIO_IN_LINE explicit Transaction(ArduinoPort& port) : port_(port), ended_(false) {
+      port_.select();
     }
-    ~Transaction() {
-      digitalWrite(pin_, HIGH);
-      SPI.endTransaction();
-    }
+    ROIO_IN_LINE ~Transaction() { end(); }
     Transaction(const Transaction&) = delete;
     Transaction& operator=(const Transaction&) = delete;
-    uint8_t exchange(uint8_t out) { return SPI.transfer(out); }
-    void restart() {
-      digitalWrite(pin_, HIGH);
-      digitalWrite(pin_, LOW);
+
+    ROIO_IN_LINE uint8_t exchange(uint8_t out) { return transfer(out); }
+    ROIO_IN_LINE void send(const uint8_t* bytes, uint8_t count) { put(bytes, count); }
+    ROIO_IN_LINE void receive(uint8_t* bytes, uint8_t count) { get(bytes, count); }
+    ROIO_IN_LINE void end() {
+      if (!ended_) {
+        port_.deselect();
+        ended_ = true;
+      }
+    }
+    ROIO_IN_LINE void restart() {
+      port_.chip_select_.set_high();
+      port_.chip_select_.set_low();
     }
 
    private:
-    uint8_t pin_;
+    ArduinoPort& port_;
+    bool ended_;
   };
 
-  class Uninterrupted {
+  class Uninterrupted : InterruptsOff {
    public:
-    explicit Uninterrupted(ArduinoPort&) : before_(SREG) { noInterrupts(); }
-    ~Uninterrupted() { SREG = before_; }
-    Uninterrupted(const Uninterrupted&) = delete;
-    Uninterrupted& operator=(const Uninterrupted&) = delete;
-
-   private:
-    uint8_t before_;
+    explicit Uninterrupted(ArduinoPort&) {}
   };
 
  private:
-  uint8_t chip_select_pin_;
-  uint8_t interrupt_pin_;
+  // Out of line: they are called from everywhere.
+  ROIO_OUT_OF_LINE void select() {
+    SPI.beginTransaction(SPISettings(spi_hz, MSBFIRST, SPI_MODE0));
+    chip_select_.set_low();
+  }
+  ROIO_IN_LINE void deselect() {
+    chip_select_.set_high();
+    SPI.endTransaction();
+  }
+  ROIO_OUT_OF_LINE static uint8_t transfer(uint8_t out) { return SPI.transfer(out); }
+  ROIO_OUT_OF_LINE static void put(const uint8_t* bytes, uint8_t count) {
+    send_block(bytes, count);
+  }
+  ROIO_OUT_OF_LINE static void get(uint8_t* bytes, uint8_t count) { receive_block(bytes, count); }
+
+  ChipSelect chip_select_;
 };
 
 }  // namespace roio

@@ -20,8 +20,7 @@
 /// costs no SPI while nothing has happened. Not from an interrupt and the main program both.
 ///
 /// **Cost.** For a frame with 8 bytes, in SPI bytes and transactions: received in a run or with an
-/// interrupt line 16 in 2, the first one found by polling 18 in 3; sent 15 in 2, and 17 in 2 where
-/// frames follow one another so closely that the chip must be told their order. A frame with n
+/// /// frames follow one another so closely that the chip must be told their order. A frame with n
 /// bytes fewer costs n fewer. A call that finds nothing costs 2 in 1, or none with an interrupt
 /// line. No call waits for the bus.
 ///
@@ -37,9 +36,19 @@
 #include <roio/filter_mcp2515.hpp>
 #include <roio/frame.hpp>
 #include <roio/header.hpp>
+#include <roio/mcp2515_frame.hpp>
+#include <roio/mcp2515_outcomes.hpp>
 #include <roio/mcp2515_queue.hpp>
 #include <roio/mcp2515_registers.hpp>
 #include <roio/status.hpp>
+
+/// On an AVR a call is smaller than what it calls, from the second on; the optimiser of a linker that
+/// sees all callers thinks otherwise.
+#if defined(__AVR__)
+#define ROIO_MCP2515_OUT_OF_LINE __attribute__((noinline))
+#else
+#define ROIO_MCP2515_OUT_OF_LINE
+#endif
 
 namespace roio {
 
@@ -49,15 +58,19 @@ namespace roio {
 //   struct PortExample {
 //     static constexpr bool has_interrupt_line = true;
 //     bool interrupt_line_is_low();
-//     uint32_t microseconds();        // free running, wraps at 2^32; only differences are used
-//     class Transaction {             // chip select is low as long as one lives
+//     void pause(uint16_t microseconds);  // that long at least, also with interrupts off
+//     uint32_t microseconds();  // free running, wraps at 2^32; for check_clock() alone
+//     class Transaction {       // chip select is low as long as one lives
 //      public:
 //       explicit Transaction(PortExample&);
 //       uint8_t exchange(uint8_t out);
-//       void restart();               // chip select high, then low again
+//       void send(const uint8_t* bytes, uint8_t count);  // 1 or more
+//       void receive(uint8_t* bytes, uint8_t count);     // 1 or more
+//       void restart();         // chip select high, then low again
+//       void end();             // chip select high already; nothing but the destructor after it
 //       ~Transaction();
 //     };
-//     class Uninterrupted {           // while one lives, nothing else runs: interrupts are off
+//     class Uninterrupted {     // while one lives, nothing else runs: interrupts are off
 //      public:
 //       explicit Uninterrupted(PortExample&);
 //       ~Uninterrupted();
@@ -66,17 +79,47 @@ namespace roio {
 //
 // SPI mode 0,0 at 10 MHz at most (mode 1,1 would send a frame twice, errata item 5).
 
-struct Mcp2515Config {
-  BitTiming timing;
-  Mcp2515Filters filters;
-  mcp2515::Mode mode = mcp2515::Mode::normal;  ///< normal, listen_only or loopback.
-  /// Each frame is tried once, then reported as failed.
-  bool one_shot = false;
-  /// How long begin() waits for the chip to answer: a crystal takes up to some milliseconds.
-  uint16_t start_timeout_ms = 20;
+/// What begin() makes of the chip, in the chip's own bytes: a configuration that is known when
+/// compiling costs these and no more.
+class Mcp2515Config {
+ public:
+  /// @param one_shot each frame is tried once, then reported as failed. Needs
+  ///        Traits::reports_outcomes.
+  Mcp2515Config(const BitTiming& timing, const Mcp2515FilterPair& filters,
+                mcp2515::Mode mode = mcp2515::Mode::normal, bool one_shot = false)
+      : Mcp2515Config(mcp2515::Cnf::word(timing), filters.mask, filters.filter[0],
+                      filters.filter[1], mcp2515::Control::of(mode, one_shot)) {}
 
-  // Written out because C++11 takes no aggregate with defaults.
-  Mcp2515Config(const BitTiming& t, const Mcp2515Filters& f) : timing(t), filters(f) {}
+  /// The same from its parts, which a compiler sees through.
+  /// @param cnf Cnf::word(). @param control Control::of().
+  __attribute__((always_inline)) Mcp2515Config(uint32_t cnf, uint32_t mask, uint32_t first, uint32_t second,
+                                   uint8_t control)
+      : bytes_{mcp2515_register(first, 0),  mcp2515_register(first, 1),
+               mcp2515_register(first, 2),  mcp2515_register(first, 3),
+               mcp2515_register(second, 0), mcp2515_register(second, 1),
+               mcp2515_register(second, 2), mcp2515_register(second, 3),
+               mcp2515_register(mask, 0),   mcp2515_register(mask, 1),
+               mcp2515_register(mask, 2),   mcp2515_register(mask, 3),
+               static_cast<uint8_t>(cnf),   static_cast<uint8_t>(cnf >> 8),
+               static_cast<uint8_t>(cnf >> 16), 0},
+        control_(control) {}
+
+  bool timing_is_valid() const { return bytes_[13] != 0; }
+  /// CANCTRL.
+  uint8_t control() const { return control_; }
+  /// Of the oscillator: 10..3200.
+  uint16_t clocks_per_bit() const { return mcp2515::Cnf::clocks_per_bit(bytes_ + 12); }
+  /// What the registers 00h..0Bh, 10h..1Bh and 20h..2Bh have to be: three filters, three filters,
+  /// two masks and CNF3, CNF2, CNF1, CANINTE (0 at first). RXB1 has the filters of RXB0, so that
+  /// what goes there went past RXB0 while it was full.
+  uint8_t operator[](uint8_t address) const {
+    const uint8_t place = (address & 0x20U) == 0 ? address & 7U : 8U | ((address >> 1) & 4U);
+    return bytes_[place | (address & 3U)];
+  }
+
+ private:
+  uint8_t bytes_[16];
+  uint8_t control_;
 };
 
 /// What became of a frame that send() took.
@@ -94,7 +137,7 @@ enum class Mcp2515State : uint8_t { active, warning, passive, bus_off };
 template <typename Count>
 struct Mcp2515Counters {
   Count received;        ///< Frames taken from the chip for the program.
-  Count foreign;         ///< Standard and remote frames, dropped.
+  Count foreign;         ///< Frames that Traits::wants() did not want, dropped.
   Count overflows;       ///< Times that frames were lost because both buffers were full: at least
                          ///< one each; the chip cannot say how many.
   Count sent;            ///< Frames sent and acknowledged.
@@ -110,31 +153,39 @@ struct Mcp2515Counters {
 /// What to leave in. Derive from it, change what differs, pass it as Traits.
 struct Mcp2515Traits {
   using Count = uint16_t;
-  /// Standard and remote frames can be sent, and are handed out when the chip lets them through.
+  /// Frames of all kinds can be sent, and all that the chip lets through are handed out.
   static constexpr bool all_kinds = false;
+  /// Without all_kinds: which of the frames that the chip lets through are handed out. The others
+  /// are counted as foreign.
+  static bool wants(const Mcp2515Frame& frame) { return frame.is_extended() && !frame.is_remote(); }
   /// Only transmit buffer 0 is used: for chips before revision B2, which may spoil the others when
   /// told to send while they receive (errata item 2). An urgent frame then waits for the one that
   /// the chip has.
   static constexpr bool only_buffer_0 = false;
-  /// Whether anybody wants to know what became of each frame. If not, the driver does not ask the
-  /// chip just for that.
+  /// Whether anybody wants to know what became of each frame. If not, there are no tokens, no
+  /// abort() and no one-shot mode, and the driver does not ask the chip just for that.
   static constexpr bool reports_outcomes = false;
+  /// Whether errors on the bus are counted, and the state that they lead to is known without a
+  /// look. If not, the counters message_errors and bus_offs stay 0, and what the chip held when
+  /// begin() is called again is not counted as discarded.
+  static constexpr bool diagnoses = true;
   /// Called from send(), poll(), receive(), abort(), begin() and check_clock(), with the token that
-  /// send() was given. Must not call the driver.
+  /// send() was given. Must not call the driver, and be short: interrupts may be off. Only with
+  /// reports_outcomes.
   void on_outcome(uint8_t, TxOutcome) {}
 };
 
-/// @tparam RxQueue frames that poll() fetches ahead of receive(), 0..127, 14 bytes each. 0: each
+/// @tparam RxQueue frames that poll() fetches ahead of receive(), 0..127, 13 bytes each. 0: each
 ///         receive() reads one from the chip.
 /// @tparam TxQueue frames that wait beside those in the chip (two normal ones and an urgent one),
-///         0..127, 15 bytes each. 0: send() says full when the chip has no room.
+///         0..127, 13 bytes each (14 with reports_outcomes). 0: send() says full when the chip has no room.
 template <typename Port, uint8_t RxQueue = 2, uint8_t TxQueue = 2, typename Traits = Mcp2515Traits>
 class Mcp2515 {
  public:
   using Counters = Mcp2515Counters<typename Traits::Count>;
 
   template <typename... Arguments>
-  explicit Mcp2515(Arguments&&... arguments)
+  explicit constexpr Mcp2515(Arguments&&... arguments)
       : port_(static_cast<Arguments&&>(arguments)...),
         traits_(),
         counters_(),
@@ -143,14 +194,11 @@ class Mcp2515 {
         control_(0),
         calls_(0),
         running_(false),
-        fresh_(false),
-        check_due_(false),
-        rx1_is_older_(false),
-        aborting_(false),
+        rx1_is_older_(0),
         pending_(0),
-        level_(0),
-        priority_(),
-        token_() {}
+        requests_(),
+        rx_queue_(),
+        tx_queue_() {}
 
   Mcp2515(const Mcp2515&) = delete;
   Mcp2515& operator=(const Mcp2515&) = delete;
@@ -158,15 +206,16 @@ class Mcp2515 {
 
   /// Resets the chip and sets it up; what it held is gone (frames that it was to send are reported
   /// as unknown). What waits in the queues stays. May be called again at any time, and must be when
-  /// poll() says that the chip is lost. Takes 1 ms when all is well; at most
-  /// config.start_timeout_ms for a chip that does not answer, and 50 ms for a bus that is never
-  /// idle for 11 bits.
-  /// @return ok. bad_timing: the chip cannot run at this timing; bad_argument: filters that cannot
-  ///         keep the order (Mcp2515Filters::in_order), or configuration mode; after these two
-  ///         nothing was touched.
+  /// poll() says that the chip is lost. Takes 1 ms when all is well; at most 60 ms for a chip that
+  /// does not answer, and as long again for a bus that is never idle for 11 bits. (SPI at 1 MHz.)
+  /// @return ok. bad_timing: the chip cannot run at this timing; bad_argument: configuration mode,
+  ///         or one_shot without reports_outcomes; after these two nothing was touched.
   ///         no_chip: no answer, or not what was written. wrong_mode: the mode was not entered (the
   ///         bus is stuck, or has no transceiver).
   ROIO_NODISCARD Status begin(const Mcp2515Config& config);
+  /// The same, of a configuration that is known to be right: does not look for bad_timing and
+  /// bad_argument.
+  ROIO_NODISCARD Status start(const Mcp2515Config& config);
 
   /// Fetches what has come in (with RxQueue 0 that is receive()'s alone), hands over what waits,
   /// looks after errors. Bounded: at most RxQueue + 2 frames and a handful of registers.
@@ -177,6 +226,8 @@ class Mcp2515 {
   /// @param frame a frame on ok only.
   /// @return ok; empty; no_chip as for poll().
   ROIO_NODISCARD Status receive(Frame& frame);
+  /// The same, as the chip has it.
+  ROIO_NODISCARD Status receive(Mcp2515Frame& frame);
 
   /// Queues a frame. Urgent ones (bit 28 of the identifier is 0) leave before normal ones, first in
   /// first out within each. Up to two normal frames are in the chip already and may go between two
@@ -187,9 +238,22 @@ class Mcp2515 {
   ///         bad_argument: an identifier, length or kind that may not be sent; wrong_mode: listen
   ///         only; no_chip: begin() has not succeeded, or the chip is lost.
   ROIO_NODISCARD Status send(const Frame& frame, uint8_t token = 0);
+  /// The same, as the chip has it.
+  /// @param frame one that may be sent: not looked at.
+  ROIO_NODISCARD Status send(const Mcp2515Frame& frame, uint8_t token = 0);
+
+  /// Enters another mode (normal, listen_only or loopback), as soon as the bus is idle for 11 bits;
+  /// waits for it as begin() does.
+  /// @return ok; bad_argument: configuration mode; no_chip; wrong_mode: not entered: begin() again.
+  ROIO_NODISCARD Status change_mode(mcp2515::Mode mode);
+
+  /// Takes the chip off the bus, into configuration mode; what it held is gone as with begin().
+  /// @return ok; no_chip: no answer.
+  Status stop();
 
   /// Takes back all frames that are not yet on the wire. Each is reported, as aborted or, if it was
   /// too late, as sent; poll() until in_flight() is 0. Meanwhile send() says full.
+  template <typename T = Traits>
   void abort();
 
   /// How many frames are in the chip to be sent, as far as was last seen.
@@ -217,7 +281,12 @@ class Mcp2515 {
                                     uint32_t& measured_hz);
 
   bool running() const { return running_; }
-  Mcp2515State state() const;
+  /// As last seen; active for ever without Traits::diagnoses.
+  Mcp2515State state() const { return state_of(error_flags_); }
+  /// As it is now: one register is read.
+  Mcp2515State read_state() { return state_of(read_register(Register::eflg)); }
+  /// READ STATUS, as it is now.
+  uint8_t read_status() { return read_quick_status(); }
   const Counters& counters() const { return counters_; }
   Port& port() { return port_; }
   Traits& traits() { return traits_; }
@@ -228,68 +297,67 @@ class Mcp2515 {
   using QuickStatus = mcp2515::QuickStatus;
   using Transaction = typename Port::Transaction;
 
-  struct Waiting {
-    Frame frame;
-    uint8_t token;
-  };
+  using Waiting = mcp2515::Waiting<Traits::reports_outcomes>;
+  using Requests = mcp2515::Requests<Traits::reports_outcomes>;
 
-  // Transmit buffers: 0 is for urgent frames, 2 and 1 for normal ones in turn.
-  static constexpr uint8_t urgent_slot = 0;
-  static constexpr uint8_t urgent_level = 3;
-  static constexpr uint8_t highest_normal_level = 2;
+  // Transmit buffers: 2 is for urgent frames, 1 and 0 for normal ones. By their bits in RTS.
+  static constexpr uint8_t urgent_buffer = 4;
+  static constexpr uint8_t first_buffer = 2;
+  static constexpr uint8_t second_buffer = 1;
 
-  /// Bit 28, in the byte where an AVR finds it at once.
-  static bool is_urgent(const Frame& frame) {
-    return (!Traits::all_kinds || is_extended(frame.kind)) &&
-           (static_cast<uint8_t>(frame.id >> 24) & 0x10U) == 0;
+  static bool is_urgent(const Mcp2515Frame& frame) {
+    return (frame.bytes[0] & 0x80U) == 0 && (!Traits::all_kinds || frame.is_extended());
   }
   bool is_sendable(const Frame& frame) const {
     return is_valid(frame) && frame.kind != FrameKind::error &&
            (Traits::all_kinds || frame.kind == FrameKind::extended);
   }
 
+  static Mcp2515State state_of(uint8_t error_flags);
+
   // single accesses
+  void open(Transaction& transaction, Instruction instruction, Register address);
   uint8_t read_register(Register address);
-  void read_registers(Register address, uint8_t* values, uint8_t count);
-  void write_registers(Register address, const uint8_t* values, uint8_t count);
+  void write_register(Register address, uint8_t value);
   void modify_register(Register address, uint8_t mask, uint8_t value);
-  bool write_and_compare(Register address, const uint8_t* values, uint8_t count);
   uint8_t read_quick_status();
+  uint8_t exchange_setup(const Mcp2515Config& config);
 
   // starting
-  void pause(uint16_t microseconds);
-  bool reset_chip(uint16_t timeout_ms);
+  bool reach(uint8_t control);
   bool configure(const Mcp2515Config& config);
+  bool prepare(const Mcp2515Config& config);
   void count_what_begin_forgets();
-  bool enter_mode(uint8_t control);
   void load_clock_frames();
   uint32_t time_clock_frames(uint32_t limit_us);
 
   // what READ STATUS shows
-  bool is_plausible(uint8_t quick) const;
-  void note(uint8_t quick, bool freed_rx0 = false);
+  ROIO_MCP2515_OUT_OF_LINE bool is_plausible(uint8_t quick);
+  ROIO_MCP2515_OUT_OF_LINE void look(uint8_t tries);
 
   // receiving
-  bool find_received();
-  bool fetch(Frame& frame);
-  bool read_rx_buffer(uint8_t buffer, Frame& frame);
-  static void read_frame(Transaction& transaction, uint8_t buffer, Frame& frame);
+  bool find_received(bool& looked);
+  bool fetch(Mcp2515Frame& frame);
+  bool read_rx_buffer(bool first, Mcp2515Frame& frame);
 
   // sending
-  bool give_to_chip(const Frame& frame, uint8_t token);
-  Status enqueue(const Frame& frame, uint8_t token);
+  bool give_to_chip(const Mcp2515Frame& frame, uint8_t token);
+  Status enqueue(const Mcp2515Frame& frame, uint8_t token);
   void pump();
-  uint8_t choose_slot(bool urgent, uint8_t& level) const;
-  bool load(const Frame& frame, uint8_t token);
+  uint8_t choose_buffer(bool urgent) const;
+  bool load(const Mcp2515Frame& frame, uint8_t token);
   void settle(uint8_t quick);
-  TxOutcome outcome_of(uint8_t slot);
+  TxOutcome outcome_of(uint8_t buffer);
+  void end(uint8_t requests, TxOutcome outcome);
   void report(uint8_t token, TxOutcome outcome);
+  ROIO_MCP2515_OUT_OF_LINE static void count(typename Traits::Count& counter) { ++counter; }
 
   // looking after the chip
-  void tend();
+  void tend(bool looked);
   void check_chip();
+  bool diagnose(uint8_t errors);
   void lose_chip();
-  void forget_chip();
+  ROIO_MCP2515_OUT_OF_LINE void forget_chip();
 
   Port port_;
   Traits traits_;
@@ -297,17 +365,12 @@ class Mcp2515 {
   uint8_t quick_;        // receive flags that READ STATUS last showed, less what was read since
   uint8_t error_flags_;  // EFLG when last looked at
   uint8_t control_;      // what CANCTRL must be
-  uint8_t calls_;        // since the chip was last checked
+  uint8_t calls_;        // since the chip was last checked, and more when that should be soon
   bool running_;
-  bool fresh_;         // READ STATUS was read in this call
-  bool check_due_;     // frames may have been lost
-  bool rx1_is_older_;  // of two full receive buffers
-  bool aborting_;
-  uint8_t pending_;      // what the chip was asked to send, bit for bit TXREQ in READ STATUS
-  uint8_t level_;        // TXP of the normal frame given to the chip last
-  uint8_t priority_[3];  // TXP as written
-  uint8_t token_[3];
-  mcp2515::Ring<Frame, RxQueue> rx_queue_;
+  uint8_t rx1_is_older_;  // not 0: // of two full receive buffers
+  uint8_t pending_;    // what the chip was asked to send, bit for bit TXREQ in READ STATUS
+  Requests requests_;
+  mcp2515::Ring<Mcp2515Frame, RxQueue> rx_queue_;
   mcp2515::Ring<Waiting, TxQueue> tx_queue_;
 };
 

@@ -12,17 +12,20 @@
 namespace roio {
 
 namespace mcp2515 {
-constexpr uint8_t no_slot = 0xFF;
-constexpr uint8_t standard_id_shift = 18;    ///< Where the 11 bits lie among the 29.
-constexpr uint16_t start_up_us = 200;        ///< 128 clocks (8.1) of any oscillator above 640 kHz.
-constexpr uint32_t mode_timeout_us = 50000;  ///< One frame at 5 kbit/s, and 11 bits.
+constexpr uint8_t no_buffer = 0;
+constexpr uint16_t pause_us = 200;  ///< 128 clocks (8.1) of any oscillator above 640 kHz.
+constexpr uint8_t pauses = 250;     ///< 50 ms: one frame at 5 kbit/s, and 11 bits.
 constexpr uint8_t calls_between_checks = 64;
+constexpr uint8_t calls_at_most = 192;
+/// Any TXP will do, if it is the same for all; but not the 0 of a line that says nothing.
+constexpr uint8_t request_level = 2;
 
 /// Sent from the chip to itself to time its oscillator; no five equal bits up to the CRC.
 constexpr uint32_t clock_frame_id = UINT32_C(0x0AAAAAAA);
 constexpr uint8_t clock_frame_data = 0x55;
 constexpr uint16_t clock_frame_bits = 131;
 constexpr uint8_t clock_frames = 3;
+constexpr uint8_t all_buffers = 7;            ///< In RTS.
 constexpr uint32_t slowest_osc_hz = 1000000;  ///< The chip takes 1 to 40 MHz.
 constexpr uint32_t clock_timeout_us = 20000;
 constexpr uint8_t slowest_clock_factor = 12;  ///< 4 MHz told 40, and some more.
@@ -31,49 +34,29 @@ constexpr uint8_t clock_tolerance = 8;  ///< One part in so many; crystals in us
 
 // --- single accesses -----------------------------------------------------------------------------
 
+ROIO_MCP2515_MEMBER(void)::open(Transaction& transaction, Instruction instruction,
+                                Register address) {
+  transaction.exchange(static_cast<uint8_t>(instruction));
+  transaction.exchange(static_cast<uint8_t>(address));
+}
+
 ROIO_MCP2515_MEMBER(uint8_t)::read_register(Register address) {
-  uint8_t value = 0;
-  read_registers(address, &value, 1);
-  return value;
+  Transaction transaction(port_);
+  open(transaction, Instruction::read, address);
+  return transaction.exchange(0);
 }
 
-ROIO_MCP2515_MEMBER(void)::read_registers(Register address, uint8_t* values, uint8_t count) {
+ROIO_MCP2515_MEMBER(void)::write_register(Register address, uint8_t value) {
   Transaction transaction(port_);
-  transaction.exchange(static_cast<uint8_t>(Instruction::read));
-  transaction.exchange(static_cast<uint8_t>(address));
-  for (uint8_t i = 0; i < count; ++i) {
-    values[i] = transaction.exchange(0);
-  }
-}
-
-ROIO_MCP2515_MEMBER(void)::write_registers(Register address, const uint8_t* values, uint8_t count) {
-  Transaction transaction(port_);
-  transaction.exchange(static_cast<uint8_t>(Instruction::write));
-  transaction.exchange(static_cast<uint8_t>(address));
-  for (uint8_t i = 0; i < count; ++i) {
-    transaction.exchange(values[i]);
-  }
+  open(transaction, Instruction::write, address);
+  transaction.exchange(value);
 }
 
 ROIO_MCP2515_MEMBER(void)::modify_register(Register address, uint8_t mask, uint8_t value) {
   Transaction transaction(port_);
-  transaction.exchange(static_cast<uint8_t>(Instruction::bit_modify));
-  transaction.exchange(static_cast<uint8_t>(address));
+  open(transaction, Instruction::bit_modify, address);
   transaction.exchange(mask);
   transaction.exchange(value);
-}
-
-ROIO_MCP2515_MEMBER(bool)::write_and_compare(Register address, const uint8_t* values,
-                                             uint8_t count) {
-  write_registers(address, values, count);
-  Transaction transaction(port_);
-  transaction.exchange(static_cast<uint8_t>(Instruction::read));
-  transaction.exchange(static_cast<uint8_t>(address));
-  bool same = true;
-  for (uint8_t i = 0; i < count; ++i) {
-    same = transaction.exchange(0) == values[i] && same;
-  }
-  return same;
 }
 
 ROIO_MCP2515_MEMBER(uint8_t)::read_quick_status() {
@@ -83,118 +66,151 @@ ROIO_MCP2515_MEMBER(uint8_t)::read_quick_status() {
 }
 
 ROIO_MCP2515_MEMBER(void)::read_error_counters(uint8_t& transmit, uint8_t& receive) {
-  uint8_t counters[2];
-  read_registers(Register::tec, counters, 2);
-  transmit = counters[0];
-  receive = counters[1];
+  transmit = read_register(Register::tec);
+  receive = read_register(Register::rec);
 }
 
 // --- starting ------------------------------------------------------------------------------------
 
-ROIO_MCP2515_MEMBER(void)::pause(uint16_t microseconds) {
-  const uint32_t start = port_.microseconds();
-  while (port_.microseconds() - start < microseconds) {
-  }
-}
-
-// A reset that comes before the oscillator runs is lost, so it is repeated until the registers show
-// one.
-ROIO_MCP2515_MEMBER(bool)::reset_chip(uint16_t timeout_ms) {
-  const uint32_t start = port_.microseconds();
+/// Has the chip enter a mode, and sees it there: configuration mode by a reset, which is repeated
+/// because one that comes before the oscillator runs is lost.
+/// @param control what CANCTRL is to be.
+ROIO_MCP2515_MEMBER(bool)::reach(uint8_t control) {
+  using mcp2515::Control;
+  write_register(Register::canctrl, control);
+  uint8_t pauses = mcp2515::pauses;
   do {
-    {
+    if (control == Control::after_reset) {
       Transaction transaction(port_);
       transaction.exchange(static_cast<uint8_t>(Instruction::reset));
     }
-    pause(mcp2515::start_up_us);
-    uint8_t values[2];  // CANSTAT, CANCTRL
-    read_registers(Register::canstat, values, 2);
-    if (values[0] == static_cast<uint8_t>(mcp2515::Mode::configuration) &&
-        (values[1] & ~mcp2515::Control::mode_mask) == mcp2515::Control::clock_out) {
+    port_.pause(mcp2515::pause_us);
+    if (((read_register(Register::canstat) ^ control) & Control::mode_mask) == 0) {
       return true;
     }
-  } while (port_.microseconds() - start < timeout_ms * UINT32_C(1000));
+  } while (--pauses != 0);
   return false;
 }
 
+/// Writes filters, masks and timing, and reads them back.
+/// @return 0 when all are as they have to be.
+ROIO_MCP2515_MEMBER(uint8_t)::exchange_setup(const Mcp2515Config& config) {
+  constexpr uint8_t block_length = 12;
+  constexpr uint8_t blocks_end = 0x30;
+  constexpr uint8_t write = static_cast<uint8_t>(Instruction::write);
+  constexpr uint8_t read = static_cast<uint8_t>(Instruction::read);
+  uint8_t instruction = write;
+  for (;;) {
+    uint8_t differences = 0;  // what a chip that is written to answers is nothing
+    uint8_t address = 0;
+    do {
+      Transaction transaction(port_);
+      open(transaction, static_cast<Instruction>(instruction), static_cast<Register>(address));
+      do {
+        const uint8_t byte = config[address];
+        differences = static_cast<uint8_t>(differences | (transaction.exchange(byte) ^ byte));
+        ++address;
+      } while ((address & 0x0FU) != block_length);
+      address = static_cast<uint8_t>(address + 0x10U - block_length);
+    } while (address != blocks_end);
+    if (instruction == read) {
+      return differences;
+    }
+    instruction = read;
+  }
+}
+
+/// Writes what the registers have to be, and reads it back.
 ROIO_MCP2515_MEMBER(bool)::configure(const Mcp2515Config& config) {
-  using mcp2515::Cnf;
   using mcp2515::Interrupt;
   using mcp2515::RxControl;
-  const Mcp2515Filters& filters = config.filters;
-  const uint8_t interrupts = Port::has_interrupt_line ? Interrupt::rx0 | Interrupt::rx1 : 0;
-  // From the masks on: CNF3, CNF2, CNF1, CANINTE, CANINTF. The three TXnIF are set and never
-  // cleared, so that every READ STATUS shows whether the chip still knows what it was told.
-  const uint8_t setup[13] = {
-      filters.mask[0][0],       filters.mask[0][1],       filters.mask[0][2],
-      filters.mask[0][3],       filters.mask[1][0],       filters.mask[1][1],
-      filters.mask[1][2],       filters.mask[1][3],       Cnf::cnf3(config.timing),
-      Cnf::cnf2(config.timing), Cnf::cnf1(config.timing), interrupts,
-      Interrupt::tx_any};
-  bool same = write_and_compare(Register::rxf0sidh, filters.filter[0], 12);
-  same = write_and_compare(Register::rxf3sidh, filters.filter[3], 12) && same;
-  same = write_and_compare(Register::rxm0sidh, setup, sizeof setup) && same;
-  const uint8_t rx0 = RxControl::by_filters | RxControl::rollover;
-  const uint8_t rx1 = RxControl::by_filters;
-  write_registers(Register::rxb0ctrl, &rx0, 1);
-  write_registers(Register::rxb1ctrl, &rx1, 1);
-  // These two also tell of frames received.
-  same = (read_register(Register::rxb0ctrl) & RxControl::settings) == rx0 && same;
-  same = (read_register(Register::rxb1ctrl) & RxControl::settings) == rx1 && same;
-  for (uint8_t slot = 0; slot < 3; ++slot) {
-    priority_[slot] = slot == urgent_slot ? urgent_level : highest_normal_level;
-    same = write_and_compare(mcp2515::txbctrl(slot), &priority_[slot], 1) && same;
+  constexpr uint8_t rx0 = RxControl::by_filters | RxControl::rollover;
+  write_register(Register::rxb0ctrl, rx0);
+  uint8_t wrong =
+      static_cast<uint8_t>((read_register(Register::rxb0ctrl) & RxControl::settings) ^ rx0);
+  for (uint8_t buffer = urgent_buffer; Traits::reports_outcomes && buffer != 0; buffer >>= 1) {
+    write_register(mcp2515::txbctrl(buffer), mcp2515::request_level);
+    wrong = static_cast<uint8_t>(wrong | (read_register(mcp2515::txbctrl(buffer)) ^
+                                          mcp2515::request_level));
   }
-  return same;
+  wrong = static_cast<uint8_t>(wrong | exchange_setup(config));
+  if (Port::has_interrupt_line) {
+    constexpr uint8_t received = Interrupt::rx0 | Interrupt::rx1;
+    write_register(Register::caninte, received);
+    wrong = static_cast<uint8_t>(wrong | (read_register(Register::caninte) ^ received));
+  }
+  // The three TXnIF are set and never cleared, so that every READ STATUS shows whether the chip
+  // still knows what it was told.
+  write_register(Register::canintf, Interrupt::tx_any);
+  return (wrong | (read_quick_status() ^ QuickStatus::txif)) == 0;
 }
 
-ROIO_MCP2515_MEMBER(bool)::enter_mode(uint8_t control) {
-  write_registers(Register::canctrl, &control, 1);
-  const uint32_t start = port_.microseconds();
-  do {
-    // CANCTRL with it: the 0 of normal mode could be that of a line that says nothing.
-    uint8_t values[2];  // CANSTAT, CANCTRL
-    read_registers(Register::canstat, values, 2);
-    if (((values[0] ^ control) & mcp2515::Control::mode_mask) == 0 && values[1] == control) {
-      return true;
-    }
-  } while (port_.microseconds() - start < mcp2515::mode_timeout_us);
-  return false;
+/// What begin() and check_clock() have in common.
+/// @return whether the chip is there, and set up.
+ROIO_MCP2515_MEMBER(bool)::prepare(const Mcp2515Config& config) {
+  forget_chip();
+  return reach(mcp2515::Control::after_reset) && configure(config);
 }
 
 ROIO_MCP2515_MEMBER(Status)::begin(const Mcp2515Config& config) {
   using mcp2515::Control;
-  if (!is_valid(config.timing)) {
+  if (!config.timing_is_valid()) {
     return Status::bad_timing;
   }
-  if (!config.filters.in_order || config.mode == mcp2515::Mode::configuration) {
+  const uint8_t mode = config.control() & Control::mode_mask;
+  if (mode == static_cast<uint8_t>(mcp2515::Mode::configuration) ||
+      (!Traits::reports_outcomes && (config.control() & Control::one_shot) != 0)) {
     return Status::bad_argument;
   }
-  if (running_) {
+  return start(config);
+}
+
+ROIO_MCP2515_MEMBER(Status)::start(const Mcp2515Config& config) {
+  if (Traits::diagnoses && running_) {
     count_what_begin_forgets();
   }
-  forget_chip();
-  if (!reset_chip(config.start_timeout_ms) || !configure(config)) {
+  if (!prepare(config)) {
     return Status::no_chip;
   }
-  control_ = static_cast<uint8_t>(static_cast<uint8_t>(config.mode) | Control::clock_out |
-                                  (config.one_shot ? Control::one_shot : 0));
-  if (!enter_mode(control_)) {
+  control_ = config.control();
+  if (!reach(control_)) {
     // Not later either, when nobody expects it any more.
-    const uint8_t configuration =
-        static_cast<uint8_t>(mcp2515::Mode::configuration) | Control::clock_out;
-    write_registers(Register::canctrl, &configuration, 1);
+    write_register(Register::canctrl, mcp2515::Control::after_reset);
     return Status::wrong_mode;
   }
   running_ = true;
   return Status::ok;
 }
 
+ROIO_MCP2515_MEMBER(Status)::change_mode(mcp2515::Mode mode) {
+  using mcp2515::Control;
+  if (mode == mcp2515::Mode::configuration) {
+    return Status::bad_argument;
+  }
+  if (!running_) {
+    return Status::no_chip;
+  }
+  control_ = static_cast<uint8_t>((control_ & ~Control::mode_mask) | static_cast<uint8_t>(mode));
+  if (!reach(control_)) {
+    stop();
+    return Status::wrong_mode;
+  }
+  return Status::ok;
+}
+
+ROIO_MCP2515_MEMBER(Status)::stop() {
+  if (Traits::diagnoses && running_) {
+    count_what_begin_forgets();
+  }
+  forget_chip();
+  return reach(mcp2515::Control::after_reset) ? Status::ok : Status::no_chip;
+}
+
 /// Losses that the chip knows of, and frames that nobody has read.
 ROIO_MCP2515_MEMBER(void)::count_what_begin_forgets() {
   check_chip();
   if (running_) {
-    note(read_quick_status());
+    look(2);
     counters_.discarded += (quick_ & QuickStatus::rx0) != 0 ? 1 : 0;
     counters_.discarded += (quick_ & QuickStatus::rx1) != 0 ? 1 : 0;
   }
@@ -204,27 +220,26 @@ ROIO_MCP2515_MEMBER(Status)::check_clock(const Mcp2515Config& config, uint32_t o
                                          uint32_t& measured_hz) {
   using mcp2515::Control;
   measured_hz = 0;
-  if (!is_valid(config.timing)) {
-    return Status::bad_timing;
-  }
   if (osc_hz < mcp2515::slowest_osc_hz) {
     return Status::bad_argument;
   }
-  forget_chip();
-  if (!reset_chip(config.start_timeout_ms) || !configure(config)) {
+  if (!config.timing_is_valid()) {
+    return Status::bad_timing;
+  }
+  if (!prepare(config)) {
     return Status::no_chip;
   }
-  if (!enter_mode(static_cast<uint8_t>(mcp2515::Mode::loopback) | Control::clock_out)) {
+  if (!reach(static_cast<uint8_t>(mcp2515::Mode::loopback) | Control::clock_out)) {
     return Status::wrong_mode;
   }
   const uint32_t clocks = UINT32_C(2) * mcp2515::clock_frames * mcp2515::clock_frame_bits *
-                          config.timing.prescaler * quanta_per_bit(config.timing);
+                          config.clocks_per_bit() / 2U;
   const uint32_t expected_us = clocks / (osc_hz / 1000U) * 1000U;
   load_clock_frames();
   const uint32_t limit_us = mcp2515::clock_timeout_us + mcp2515::slowest_clock_factor * expected_us;
   const uint32_t elapsed_us = time_clock_frames(limit_us);
   // Also ends what may still be under way.
-  if (!reset_chip(config.start_timeout_ms) || elapsed_us == 0) {
+  if (!reach(Control::after_reset) || elapsed_us == 0) {
     return Status::no_chip;
   }
   if (elapsed_us >= limit_us) {
@@ -240,19 +255,15 @@ ROIO_MCP2515_MEMBER(Status)::check_clock(const Mcp2515Config& config, uint32_t o
 
 /// One and the same frame into all three transmit buffers.
 ROIO_MCP2515_MEMBER(void)::load_clock_frames() {
-  uint8_t id[4];
-  to_mcp2515_registers(mcp2515::clock_frame_id, id);
-  for (uint8_t slot = 0; slot < mcp2515::clock_frames; ++slot) {
-    Transaction transaction(port_);
-    transaction.exchange(mcp2515::load_tx(slot));
-    transaction.exchange(id[0]);
-    transaction.exchange(static_cast<uint8_t>(id[1] | mcp2515::extended_bit));
-    transaction.exchange(id[2]);
-    transaction.exchange(id[3]);
-    transaction.exchange(max_data_length);
-    for (uint8_t i = 0; i < max_data_length; ++i) {
-      transaction.exchange(mcp2515::clock_frame_data);
+  for (uint8_t buffer = urgent_buffer; buffer != 0; buffer >>= 1) {
+    Frame frame = {mcp2515::clock_frame_id, FrameKind::extended, max_data_length, {}};
+    for (uint8_t& byte : frame.data) {
+      byte = mcp2515::clock_frame_data;
     }
+    const Mcp2515Frame bytes = mcp2515::to_chip(frame);
+    Transaction transaction(port_);
+    transaction.exchange(mcp2515::load_tx(buffer));
+    transaction.send(bytes.bytes, sizeof bytes.bytes);
   }
 }
 
@@ -260,73 +271,71 @@ ROIO_MCP2515_MEMBER(void)::load_clock_frames() {
 /// @return how long that took, or some time from limit_us on.
 ROIO_MCP2515_MEMBER(uint32_t)::time_clock_frames(uint32_t limit_us) {
   constexpr uint8_t requested =
-      QuickStatus::txreq(0) | QuickStatus::txreq(1) | QuickStatus::txreq(2);
+      QuickStatus::txreq(1) | QuickStatus::txreq(2) | QuickStatus::txreq(4);
   {
     Transaction transaction(port_);
-    transaction.exchange(mcp2515::request_to_send(0) | mcp2515::request_to_send(1) |
-                         mcp2515::request_to_send(2));
+    transaction.exchange(mcp2515::request_to_send(mcp2515::all_buffers));
   }
   const uint32_t start = port_.microseconds();
   uint32_t elapsed_us = 0;
+  // A clock that stands still (interrupts are off) must not keep anybody here: a look takes 2 us.
+  uint32_t looks = limit_us / 2U;
   do {
     elapsed_us = port_.microseconds() - start;
-  } while ((read_quick_status() & requested) != 0 && elapsed_us < limit_us);
+  } while ((read_quick_status() & requested) != 0 && elapsed_us < limit_us && --looks != 0);
   return elapsed_us;
 }
 
 // --- what READ STATUS shows ----------------------------------------------------------------------
 
 /// The three TXnIF are set, and the chip sends nothing but what it was told to. A chip that was
-/// reset, and lines stuck at 0 or 1, look different.
-ROIO_MCP2515_MEMBER(bool)::is_plausible(uint8_t quick) const {
+/// reset, and lines stuck at 0 or 1, look different; but for one that is at 1 when all buffers are in
+/// use: there is no mode 7, which CANSTAT would have then.
+ROIO_MCP2515_MEMBER(bool)::is_plausible(uint8_t quick) {
+  using mcp2515::Control;
+  if (quick == QuickStatus::everything &&
+      (read_register(Register::canstat) & Control::mode_mask) == Control::mode_mask) {
+    return false;
+  }
   return (quick & static_cast<uint8_t>(~(QuickStatus::any_rx | pending_))) == QuickStatus::txif;
 }
 
-/// @param freed_rx0 this is the look right after RXB0 was freed.
-ROIO_MCP2515_MEMBER(void)::note(uint8_t quick, bool freed_rx0) {
-  fresh_ = true;
-  const bool nonsense = !is_plausible(quick);
-  // All buffers in use looks like a line stuck at 1: that wants a second opinion, too.
-  if (nonsense || quick == QuickStatus::everything) {
-    check_chip();
-    quick = running_ ? read_quick_status() : 0;
-    // The second look comes later: two frames may be in by now, and nothing tells their order.
-    const bool order_lost =
-        nonsense && freed_rx0 && (quick & QuickStatus::any_rx) == QuickStatus::any_rx;
-    if (order_lost || !is_plausible(quick)) {
-      lose_chip();
+/// Reads READ STATUS and takes in what it shows; nonsense tells of a lost chip.
+/// @param tries 2 where nonsense may as well come from a spike on the wires.
+ROIO_MCP2515_MEMBER(void)::look(uint8_t tries) {
+  do {
+    const uint8_t quick = read_quick_status();
+    if (is_plausible(quick)) {
+      quick_ = quick & QuickStatus::any_rx;
+      settle(quick);
       return;
     }
-  }
-  quick_ = quick & QuickStatus::any_rx;
-  settle(quick);
+  } while (--tries != 0);
+  lose_chip();
 }
 
 // --- receiving -----------------------------------------------------------------------------------
 
 /// Whether a frame waits in the chip, as far as is known or can be seen. A line that is low is no
 /// frame yet: it may be stuck, or a spike.
-ROIO_MCP2515_MEMBER(bool)::find_received() {
-  const bool may_have = !fresh_ && (!Port::has_interrupt_line || port_.interrupt_line_is_low());
-  if (quick_ == 0 && may_have) {
-    note(read_quick_status());
+/// @param looked whether READ STATUS has been read in this call.
+ROIO_MCP2515_MEMBER(bool)::find_received(bool& looked) {
+  if (quick_ == 0 && !looked && (!Port::has_interrupt_line || port_.interrupt_line_is_low())) {
+    look(2);
+    looked = true;
   }
-  return running_ && quick_ != 0;
+  return quick_ != 0;
 }
 
 /// Takes the older frame out of the chip. There must be one.
 /// @return whether it is one for the program.
-ROIO_MCP2515_MEMBER(bool)::fetch(Frame& frame) {
-  const bool first = (quick_ & QuickStatus::rx0) != 0 && !rx1_is_older_;
-  if (!read_rx_buffer(first ? 0 : 1, frame)) {
+ROIO_MCP2515_MEMBER(bool)::fetch(Mcp2515Frame& frame) {
+  if (!read_rx_buffer((quick_ & QuickStatus::rx0) != 0 && !rx1_is_older_, frame)) {
     return false;
   }
-  if (!Traits::all_kinds && frame.kind != FrameKind::extended) {
-    ++counters_.foreign;
-    return false;
-  }
-  ++counters_.received;
-  return true;
+  const bool wanted = Traits::all_kinds || Traits::wants(frame);
+  count(wanted ? counters_.received : counters_.foreign);
+  return wanted;
 }
 
 /// Reads a buffer, which frees it, and looks what has come meanwhile.
@@ -340,64 +349,51 @@ ROIO_MCP2515_MEMBER(bool)::fetch(Frame& frame) {
 /// With an interrupt line: a buffer that is full holds it low, so a line that is high before the
 /// buffer is freed tells of a chip that was reset or fell off; one that is high after it, that
 /// nothing more is there, and spares the look.
+/// @param first RXB0, else RXB1.
 /// @return false: the chip was lost meanwhile, or the line says so; the frame cannot be trusted.
-ROIO_MCP2515_MEMBER(bool)::read_rx_buffer(uint8_t buffer, Frame& frame) {
-  uint8_t quick = 0;
+ROIO_MCP2515_MEMBER(bool)::read_rx_buffer(bool first, Mcp2515Frame& frame) {
   bool trusted = true;
-  bool looks = true;
   {
     Transaction transaction(port_);
-    read_frame(transaction, buffer, frame);
+    transaction.exchange(mcp2515::read_rx(first));
+    transaction.receive(frame.bytes, Mcp2515Frame::head_length);
+    frame.limit_length();
+    // Only as many as the frame has.
+    if (frame.length() != 0) {
+      transaction.receive(frame.data(), frame.length());
+    }
     trusted = !Port::has_interrupt_line || port_.interrupt_line_is_low();
     typename Port::Uninterrupted together(port_);
-    transaction.restart();
-    looks = !Port::has_interrupt_line || !trusted || port_.interrupt_line_is_low();
-    if (looks) {
-      transaction.exchange(static_cast<uint8_t>(Instruction::read_status));
-      quick = transaction.exchange(0);
+    transaction.end();
+    if (!Port::has_interrupt_line || !trusted || port_.interrupt_line_is_low()) {
+      // Once only: the order follows from this very look, and that the buffer was freed.
+      look(1);
+    } else {
+      quick_ = 0;
     }
   }
-  quick_ = 0;
-  if (looks) {
-    note(quick, buffer == 0);
+  rx1_is_older_ = first ? quick_ & QuickStatus::rx1 : 0;
+  if (quick_ != 0) {
+    // Perhaps both were full for a while, and a third frame was lost: to be looked at soon.
+    calls_ |= mcp2515::calls_between_checks;
   }
-  rx1_is_older_ = buffer == 0 && (quick_ & QuickStatus::rx1) != 0;
-  // Perhaps both were full for a while, and a third frame was lost.
-  check_due_ = check_due_ || (quick_ != 0 && (buffer == 1 || rx1_is_older_));
   trusted = trusted && running_;
   if (!trusted) {
-    ++counters_.discarded;
+    count(counters_.discarded);
   }
   return trusted;
 }
 
-/// The buffer's bytes, only as many as the frame has. DLC 9..15 is 8 bytes (ISO 11898-1).
-ROIO_MCP2515_MEMBER(void)::read_frame(Transaction& transaction, uint8_t buffer, Frame& frame) {
-  transaction.exchange(mcp2515::read_rx(buffer));
-  uint8_t id[4];
-  for (uint8_t& byte : id) {
-    byte = transaction.exchange(0);
+ROIO_MCP2515_MEMBER(Status)::receive(Frame& frame) {
+  Mcp2515Frame bytes;
+  const Status status = receive(bytes);
+  if (status == Status::ok) {
+    frame = mcp2515::from_chip(bytes);
   }
-  const uint8_t dlc = transaction.exchange(0);
-  const bool extended = (id[1] & mcp2515::extended_bit) != 0;
-  const bool remote =
-      extended ? (dlc & mcp2515::remote_bit) != 0 : (id[1] & mcp2515::standard_remote_bit) != 0;
-  frame.id = from_mcp2515_registers(id);
-  if (Traits::all_kinds && !extended) {
-    frame.id >>= mcp2515::standard_id_shift;
-  }
-  frame.kind = extended ? (remote ? FrameKind::extended_remote : FrameKind::extended)
-                        : (remote ? FrameKind::standard_remote : FrameKind::standard);
-  frame.length = dlc & 0x0FU;
-  if (frame.length > max_data_length) {
-    frame.length = max_data_length;
-  }
-  for (uint8_t i = 0; i < max_data_length; ++i) {
-    frame.data[i] = !remote && i < frame.length ? transaction.exchange(0) : uint8_t{0};
-  }
+  return status;
 }
 
-ROIO_MCP2515_MEMBER(Status)::receive(Frame& frame) {
+ROIO_MCP2515_MEMBER(Status)::receive(Mcp2515Frame& frame) {
   if (rx_queue_.empty() && RxQueue > 0) {
     poll();
   }
@@ -411,12 +407,13 @@ ROIO_MCP2515_MEMBER(Status)::receive(Frame& frame) {
   }
   bool received = false;
   if (RxQueue == 0) {
-    fresh_ = false;
+    bool looked = false;
     // As many as the chip holds, so that frames for others keep nobody here.
-    for (uint8_t i = 0; i < 2 && !received && find_received(); ++i) {
+    for (uint8_t tries = 2; tries != 0 && !received && find_received(looked); --tries) {
       received = fetch(frame);
+      looked = true;
     }
-    tend();
+    tend(looked);
   }
   return received ? Status::ok : running_ ? Status::empty : Status::no_chip;
 }
@@ -425,13 +422,14 @@ ROIO_MCP2515_MEMBER(Status)::poll() {
   if (!running_) {
     return Status::no_chip;
   }
-  fresh_ = false;
-  for (uint8_t i = 0; i < RxQueue + 2U && !rx_queue_.full() && find_received(); ++i) {
+  bool looked = false;
+  for (uint8_t i = 0; i < RxQueue + 2U && !rx_queue_.full() && find_received(looked); ++i) {
     if (fetch(rx_queue_.next())) {
       rx_queue_.commit();
     }
+    looked = true;
   }
-  tend();
+  tend(looked);
   return running_ ? Status::ok : Status::no_chip;
 }
 
@@ -441,6 +439,10 @@ ROIO_MCP2515_MEMBER(Status)::send(const Frame& frame, uint8_t token) {
   if (!is_sendable(frame)) {
     return Status::bad_argument;
   }
+  return send(mcp2515::to_chip(frame), token);
+}
+
+ROIO_MCP2515_MEMBER(Status)::send(const Mcp2515Frame& frame, uint8_t token) {
   if (!running_) {
     return Status::no_chip;
   }
@@ -448,29 +450,28 @@ ROIO_MCP2515_MEMBER(Status)::send(const Frame& frame, uint8_t token) {
       static_cast<uint8_t>(mcp2515::Mode::listen_only)) {
     return Status::wrong_mode;
   }
-  if (!give_to_chip(frame, token)) {
+  for (bool asked = false;; asked = true) {
+    if (give_to_chip(frame, token)) {
+      return Status::ok;
+    }
+    if (asked) {
+      return running_ ? enqueue(frame, token) : Status::no_chip;
+    }
     // Only the chip knows whether it has room by now.
-    note(read_quick_status());
+    look(2);
     pump();
-    if (!running_) {
-      return Status::no_chip;
-    }
-    if (!give_to_chip(frame, token)) {
-      return enqueue(frame, token);
-    }
   }
-  return Status::ok;
 }
 
 /// Whether no frame waits that has to go first, and the chip has room; then it is there.
-ROIO_MCP2515_MEMBER(bool)::give_to_chip(const Frame& frame, uint8_t token) {
-  const bool goes_next =
-      tx_queue_.empty() || (is_urgent(frame) && !is_urgent(tx_queue_.front().frame));
+ROIO_MCP2515_MEMBER(bool)::give_to_chip(const Mcp2515Frame& frame, uint8_t token) {
+  const bool goes_next = tx_queue_.empty() || (is_urgent(frame) &&
+                                               !is_urgent(tx_queue_.front().frame));
   return goes_next && load(frame, token);
 }
 
-ROIO_MCP2515_MEMBER(Status)::enqueue(const Frame& frame, uint8_t token) {
-  if (tx_queue_.full() || aborting_) {
+ROIO_MCP2515_MEMBER(Status)::enqueue(const Mcp2515Frame& frame, uint8_t token) {
+  if (tx_queue_.full() || requests_.aborting()) {
     return Status::full;
   }
   uint8_t place = tx_queue_.size();
@@ -486,80 +487,53 @@ ROIO_MCP2515_MEMBER(Status)::enqueue(const Frame& frame, uint8_t token) {
     }
   }
   tx_queue_[place].frame = frame;
-  tx_queue_[place].token = token;
+  tx_queue_[place].keep(token);
   return Status::ok;
 }
 
 ROIO_MCP2515_MEMBER(void)::pump() {
-  while (!tx_queue_.empty() && load(tx_queue_.front().frame, tx_queue_.front().token)) {
+  while (!tx_queue_.empty() && load(tx_queue_.front().frame, tx_queue_.front().kept())) {
     tx_queue_.pop();
   }
 }
 
-/// Which transmit buffer the next frame may go to, and with which priority.
+/// Which transmit buffer the next frame may go to.
 ///
-/// The chip sends the highest TXP first and, among equals, the highest buffer. So a frame that must
-/// come after the one in buffer 2 goes to buffer 1 with the same TXP, and one that must come after
-/// the one in buffer 1 to buffer 2 with a lower TXP; at 0 the chip has to run empty once. Buffer 0
-/// has TXP 3, above all of these, and takes no normal frame: so an urgent one never waits for a
-/// normal one to win the bus.
-ROIO_MCP2515_MEMBER(uint8_t)::choose_slot(bool urgent, uint8_t& level) const {
-  if (urgent || Traits::only_buffer_0) {
-    level = urgent_level;
-    return (pending_ & QuickStatus::txreq(0)) == 0 ? urgent_slot : mcp2515::no_slot;
+/// All have the same TXP, and among equals the chip sends the highest buffer first. So urgent
+/// frames have buffer 2: there one never waits for a normal one to win the bus. A normal frame goes
+/// to buffer 1, and one that comes while that is under way to buffer 0, behind it. One that went to
+/// buffer 1 now would overtake it: the next waits until both are gone.
+ROIO_MCP2515_MEMBER(uint8_t)::choose_buffer(bool urgent) const {
+  if (Traits::only_buffer_0) {
+    return pending_ == 0 ? second_buffer : mcp2515::no_buffer;
   }
-  const bool in_1 = (pending_ & QuickStatus::txreq(1)) != 0;
-  const bool in_2 = (pending_ & QuickStatus::txreq(2)) != 0;
-  level = in_1 || in_2 ? level_ : highest_normal_level;
-  if (!in_1) {
-    return in_2 ? 1 : 2;
+  if (urgent) {
+    return (pending_ & QuickStatus::txreq(urgent_buffer)) == 0 ? urgent_buffer : mcp2515::no_buffer;
   }
-  if (in_2 || level == 0) {
-    return mcp2515::no_slot;
+  if ((pending_ & QuickStatus::txreq(second_buffer)) != 0) {
+    return mcp2515::no_buffer;
   }
-  --level;
-  return 2;
+  return (pending_ & QuickStatus::txreq(first_buffer)) == 0 ? first_buffer : second_buffer;
 }
 
-ROIO_MCP2515_MEMBER(bool)::load(const Frame& frame, uint8_t token) {
-  uint8_t level = 0;
-  const bool accepts = running_ && !aborting_;
-  const uint8_t slot = accepts ? choose_slot(is_urgent(frame), level) : mcp2515::no_slot;
-  if (slot == mcp2515::no_slot) {
+ROIO_MCP2515_MEMBER(bool)::load(const Mcp2515Frame& frame, uint8_t token) {
+  const bool accepts = running_ && !requests_.aborting();
+  const uint8_t buffer =
+      accepts ? choose_buffer(is_urgent(frame)) : mcp2515::no_buffer;
+  if (buffer == mcp2515::no_buffer) {
     return false;
   }
-  const bool extended = !Traits::all_kinds || is_extended(frame.kind);
-  uint8_t id[4];
-  to_mcp2515_registers(extended ? frame.id : frame.id << mcp2515::standard_id_shift, id);
+  const uint8_t length = Traits::all_kinds && frame.is_remote() ? uint8_t{0} : frame.length();
   {
     Transaction transaction(port_);
-    if (priority_[slot] == level) {
-      transaction.exchange(mcp2515::load_tx(slot));
-    } else {
-      // TXBnCTRL lies right before the buffer: one write does for both.
-      transaction.exchange(static_cast<uint8_t>(Instruction::write));
-      transaction.exchange(static_cast<uint8_t>(mcp2515::txbctrl(slot)));
-      transaction.exchange(level);
-      priority_[slot] = level;
-    }
-    transaction.exchange(id[0]);
-    transaction.exchange(static_cast<uint8_t>(id[1] | (extended ? mcp2515::extended_bit : 0U)));
-    transaction.exchange(id[2]);
-    transaction.exchange(id[3]);
-    const bool remote = Traits::all_kinds && is_remote(frame.kind);
-    transaction.exchange(static_cast<uint8_t>(frame.length | (remote ? mcp2515::remote_bit : 0U)));
-    for (uint8_t i = 0; i < frame.length && !remote; ++i) {
-      transaction.exchange(frame.data[i]);
-    }
+    transaction.exchange(mcp2515::load_tx(buffer));
+    transaction.send(frame.bytes, static_cast<uint8_t>(Mcp2515Frame::head_length + length));
     // By RTS, never by writing TXREQ: errata item 5.
     transaction.restart();
-    transaction.exchange(mcp2515::request_to_send(slot));
+    transaction.exchange(mcp2515::request_to_send(buffer));
   }
-  pending_ |= QuickStatus::txreq(slot);
-  token_[slot] = token;
-  if (slot != urgent_slot) {
-    level_ = level;
-  }
+  pending_ = static_cast<uint8_t>(pending_ | QuickStatus::txreq(buffer));
+  requests_.keep(buffer, token);
   return true;
 }
 
@@ -567,27 +541,40 @@ ROIO_MCP2515_MEMBER(bool)::load(const Frame& frame, uint8_t token) {
 ROIO_MCP2515_MEMBER(void)::settle(uint8_t quick) {
   const uint8_t ended = static_cast<uint8_t>(pending_ & ~quick);
   pending_ &= quick;
-  uint8_t bit = QuickStatus::txreq(0);
-  for (uint8_t slot = 0; ended != 0 && slot < 3; ++slot, bit = static_cast<uint8_t>(bit << 2)) {
-    if ((ended & bit) != 0) {
-      report(token_[slot], outcome_of(slot));
-    }
-  }
-  if (aborting_ && pending_ == 0) {
+  end(ended, TxOutcome::sent);
+  if (requests_.aborting() && pending_ == 0) {
     modify_register(Register::canctrl, mcp2515::Control::abort_all, 0);
-    aborting_ = false;
+    requests_.set_aborting(false);
+  }
+}
+
+/// Reports what became of these requests: bits TXREQ as in READ STATUS.
+/// @param outcome unknown, or what there is to be found out more about.
+ROIO_MCP2515_MEMBER(void)::end(uint8_t requests, TxOutcome outcome) {
+  if (!Traits::reports_outcomes) {
+    auto& counter = outcome == TxOutcome::sent ? counters_.sent : counters_.unknown;
+    for (; requests != 0; requests &= static_cast<uint8_t>(requests - 1U)) {
+      count(counter);
+    }
+    return;
+  }
+  for (uint8_t buffer = urgent_buffer; buffer != 0; buffer >>= 1) {
+    if ((requests & QuickStatus::txreq(buffer)) != 0) {
+      report(requests_.token_of(buffer),
+             outcome == TxOutcome::unknown ? outcome : outcome_of(buffer));
+    }
   }
 }
 
 /// A request ends by success, unless somebody has asked for less.
-ROIO_MCP2515_MEMBER(TxOutcome)::outcome_of(uint8_t slot) {
+ROIO_MCP2515_MEMBER(TxOutcome)::outcome_of(uint8_t buffer) {
   using mcp2515::TxControl;
   const bool one_shot = (control_ & mcp2515::Control::one_shot) != 0;
-  if (!aborting_ && !one_shot) {
+  if (!requests_.aborting() && !one_shot) {
     return TxOutcome::sent;
   }
-  const uint8_t control = read_register(mcp2515::txbctrl(slot));
-  if ((control & TxControl::fixed) != priority_[slot]) {
+  const uint8_t control = read_register(mcp2515::txbctrl(buffer));
+  if ((control & TxControl::fixed) != mcp2515::request_level) {
     return TxOutcome::unknown;  // that is no answer of a chip that has ended this request
   }
   if ((control & (TxControl::lost_arbitration | TxControl::error)) != 0 && one_shot) {
@@ -598,23 +585,26 @@ ROIO_MCP2515_MEMBER(TxOutcome)::outcome_of(uint8_t slot) {
 
 ROIO_MCP2515_MEMBER(void)::report(uint8_t token, TxOutcome outcome) {
   if (outcome == TxOutcome::sent) {
-    ++counters_.sent;
+    count(counters_.sent);
   } else if (outcome == TxOutcome::unknown) {
-    ++counters_.unknown;
+    count(counters_.unknown);
   } else {
-    ++counters_.not_sent;
+    count(counters_.not_sent);
   }
   traits_.on_outcome(token, outcome);
 }
 
-ROIO_MCP2515_MEMBER(void)::abort() {
+template <typename Port, uint8_t RxQueue, uint8_t TxQueue, typename Traits>
+template <typename T>
+void Mcp2515<Port, RxQueue, TxQueue, Traits>::abort() {
+  static_assert(T::reports_outcomes, "abort() needs Traits::reports_outcomes");
   while (!tx_queue_.empty()) {
-    const uint8_t token = tx_queue_.front().token;
+    const uint8_t token = tx_queue_.front().kept();
     tx_queue_.pop();
     report(token, TxOutcome::aborted);
   }
   if (running_ && pending_ != 0) {
-    aborting_ = true;
+    requests_.set_aborting(true);
     modify_register(Register::canctrl, mcp2515::Control::abort_all, mcp2515::Control::abort_all);
   }
 }
@@ -622,62 +612,65 @@ ROIO_MCP2515_MEMBER(void)::abort() {
 // --- looking after the chip ----------------------------------------------------------------------
 
 /// What is done at the end of every call that has time.
-ROIO_MCP2515_MEMBER(void)::tend() {
+/// @param looked whether READ STATUS has been read in this call.
+ROIO_MCP2515_MEMBER(void)::tend(bool looked) {
   ++calls_;
-  const bool check = calls_ >= mcp2515::calls_between_checks;
-  const bool somebody_waits =
-      !tx_queue_.empty() || aborting_ || (pending_ != 0 && (Traits::reports_outcomes || check));
-  if (running_ && somebody_waits && !fresh_) {
-    note(read_quick_status());
+  // When there is time, and at the latest when there has been none for long.
+  const bool check = calls_ >= mcp2515::calls_between_checks &&
+                     (quick_ == 0 || calls_ >= mcp2515::calls_at_most);
+  // A line may keep silent for ever. Without one, every call that finds nothing has looked.
+  const bool must_look = (Port::has_interrupt_line && check) || !tx_queue_.empty() ||
+                    requests_.aborting() || (Traits::reports_outcomes && pending_ != 0);
+  if (must_look && !looked && running_) {
+    look(2);
   }
-  if (running_) {
-    pump();
-  }
-  if (running_ && (check || (check_due_ && quick_ == 0))) {
-    check_chip();
+  pump();
+  if (check) {
+    calls_ = 0;
+    if (running_) {
+      check_chip();
+    }
   }
 }
 
-/// Looks whether the chip is what begin() made of it, and at its error flags.
+/// Looks at the error flags, and whether the chip is what begin() made of it.
 ROIO_MCP2515_MEMBER(void)::check_chip() {
-  using mcp2515::Control;
   using mcp2515::ErrorFlag;
-  using mcp2515::Interrupt;
-  uint8_t values[4];  // CANINTF, EFLG, CANSTAT, CANCTRL
-  read_registers(Register::canintf, values, sizeof values);
-  const uint8_t flags = values[0];
-  const uint8_t errors = values[1];
-  calls_ = 0;
-  check_due_ = false;
-  if (quick_ == 0) {
-    quick_ = flags & QuickStatus::any_rx;  // also when the interrupt line keeps silent about them
-  }
-  if ((flags & Interrupt::tx_any) != Interrupt::tx_any ||
-      ((values[2] ^ control_) & Control::mode_mask) != 0 ||
-      (values[3] & ~Control::abort_all) != control_) {
+  const uint8_t errors = read_register(Register::eflg);
+  if (Traits::diagnoses && !diagnose(errors)) {
     lose_chip();
     return;
   }
-  const uint8_t seen = flags & (Interrupt::error | Interrupt::message_error);
-  if (seen != 0) {
-    modify_register(Register::canintf, seen, 0);
+  const uint8_t overflow = errors & ErrorFlag::any_overflow;
+  if (overflow != 0) {
+    count(counters_.overflows);
+    write_register(Register::eflg, 0);  // no other bit can be written
   }
-  if ((seen & Interrupt::message_error) != 0) {
-    ++counters_.message_errors;
+}
+
+/// @return whether the chip is what begin() made of it.
+ROIO_MCP2515_MEMBER(bool)::diagnose(uint8_t errors) {
+  using mcp2515::Interrupt;
+  const uint8_t flags = read_register(Register::canintf);
+  const uint8_t status = read_register(Register::canstat);
+  if ((flags & Interrupt::tx_any) != Interrupt::tx_any ||
+      ((status ^ control_) & mcp2515::Control::mode_mask) != 0) {
+    return false;
   }
-  if ((errors & ErrorFlag::any_overflow) != 0) {
-    ++counters_.overflows;
-    modify_register(Register::eflg, errors & ErrorFlag::any_overflow, 0);
+  if ((flags & Interrupt::message_error) != 0) {
+    count(counters_.message_errors);
+    modify_register(Register::canintf, Interrupt::message_error, 0);
   }
-  if ((errors & ~error_flags_ & ErrorFlag::bus_off) != 0) {
-    ++counters_.bus_offs;
+  if ((errors & ~error_flags_ & mcp2515::ErrorFlag::bus_off) != 0) {
+    count(counters_.bus_offs);
   }
   error_flags_ = errors;
+  return true;
 }
 
 ROIO_MCP2515_MEMBER(void)::lose_chip() {
   if (running_) {
-    ++counters_.chip_losses;
+    count(counters_.chip_losses);
   }
   forget_chip();
 }
@@ -686,26 +679,20 @@ ROIO_MCP2515_MEMBER(void)::lose_chip() {
 ROIO_MCP2515_MEMBER(void)::forget_chip() {
   running_ = false;
   quick_ = 0;
-  rx1_is_older_ = false;
-  aborting_ = false;
-  check_due_ = false;
+  rx1_is_older_ = 0;
+  requests_.set_aborting(false);
   error_flags_ = 0;
-  uint8_t bit = QuickStatus::txreq(0);
-  for (uint8_t slot = 0; slot < 3; ++slot, bit = static_cast<uint8_t>(bit << 2)) {
-    if ((pending_ & bit) != 0) {
-      report(token_[slot], TxOutcome::unknown);
-    }
-  }
+  end(pending_, TxOutcome::unknown);
   pending_ = 0;
 }
 
-ROIO_MCP2515_MEMBER(Mcp2515State)::state() const {
+ROIO_MCP2515_MEMBER(Mcp2515State)::state_of(uint8_t error_flags) {
   using mcp2515::ErrorFlag;
-  return (error_flags_ & ErrorFlag::bus_off) != 0 ? Mcp2515State::bus_off
-         : (error_flags_ & (ErrorFlag::rx_passive | ErrorFlag::tx_passive)) != 0
+  return (error_flags & ErrorFlag::bus_off) != 0 ? Mcp2515State::bus_off
+         : (error_flags & (ErrorFlag::rx_passive | ErrorFlag::tx_passive)) != 0
              ? Mcp2515State::passive
-         : (error_flags_ & ErrorFlag::warning) != 0 ? Mcp2515State::warning
-                                                    : Mcp2515State::active;
+         : (error_flags & ErrorFlag::warning) != 0 ? Mcp2515State::warning
+                                                   : Mcp2515State::active;
 }
 
 }  // namespace roio

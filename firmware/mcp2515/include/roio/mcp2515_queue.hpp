@@ -11,7 +11,7 @@ namespace mcp2515 {
 template <typename Entry, uint8_t Capacity>
 class Ring {
  public:
-  Ring() : first_(0), size_(0) {}
+  constexpr Ring() : entries_(), first_(0), size_(0) {}
 
   bool empty() const { return size_ == 0; }
   bool full() const { return size_ == Capacity; }

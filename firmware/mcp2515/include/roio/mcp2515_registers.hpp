@@ -18,19 +18,17 @@ enum class Instruction : uint8_t {
   bit_modify = 0x05,
   read_status = 0xA0,
   load_tx_buffer = 0x40,   ///< | load_tx()
-  request_to_send = 0x80,  ///< | one bit a buffer
+  request_to_send = 0x80,  ///< | the buffer's bit
   read_rx_buffer = 0x90,   ///< | read_rx()
 };
 
 /// Registers (table 11-1).
 enum class Register : uint8_t {
-  rxf0sidh = 0x00,
   canstat = 0x0E,
   canctrl = 0x0F,
-  rxf3sidh = 0x10,
   tec = 0x1C,
-  rxm0sidh = 0x20,
-  cnf3 = 0x28,
+  rec = 0x1D,
+  caninte = 0x2B,
   canintf = 0x2C,
   eflg = 0x2D,
   txb0ctrl = 0x30,
@@ -38,19 +36,22 @@ enum class Register : uint8_t {
   rxb1ctrl = 0x70,
 };
 
-/// READ RX BUFFER from SIDH on, of buffer 0 or 1.
-constexpr uint8_t read_rx(uint8_t buffer) {
-  return static_cast<uint8_t>(static_cast<uint8_t>(Instruction::read_rx_buffer) | (buffer << 2));
+/// READ RX BUFFER from SIDH on, of RXB0 or else RXB1.
+constexpr uint8_t read_rx(bool first) {
+  return static_cast<uint8_t>(static_cast<uint8_t>(Instruction::read_rx_buffer) | (first ? 0U : 4U));
 }
-/// LOAD TX BUFFER from SIDH on, of buffer 0 to 2.
+// A transmit buffer is named by its bit in RTS: 1, 2, 4 for buffers 0, 1, 2.
+
+/// LOAD TX BUFFER from SIDH on: 40h, 42h, 44h.
 constexpr uint8_t load_tx(uint8_t buffer) {
-  return static_cast<uint8_t>(static_cast<uint8_t>(Instruction::load_tx_buffer) | (buffer << 1));
+  return static_cast<uint8_t>(static_cast<uint8_t>(Instruction::load_tx_buffer) | (buffer & 6U));
 }
-constexpr uint8_t request_to_send(uint8_t buffer) {
-  return static_cast<uint8_t>(static_cast<uint8_t>(Instruction::request_to_send) | (1U << buffer));
+constexpr uint8_t request_to_send(uint8_t buffers) {
+  return static_cast<uint8_t>(static_cast<uint8_t>(Instruction::request_to_send) | buffers);
 }
+/// TXBnCTRL: 30h, 40h, 50h.
 constexpr Register txbctrl(uint8_t buffer) {
-  return static_cast<Register>(static_cast<uint8_t>(Register::txb0ctrl) + 0x10U * buffer);
+  return static_cast<Register>(static_cast<uint8_t>(Register::txb0ctrl) + 0x10U * (buffer >> 1));
 }
 
 /// The byte that READ STATUS returns (figure 12-8):
@@ -62,8 +63,9 @@ struct QuickStatus {
   static constexpr uint8_t any_rx = rx0 | rx1;
   static constexpr uint8_t everything = 0xFF;
   static constexpr uint8_t txif = 0x08 | 0x20 | 0x80;
+  /// @param buffer by its bit in RTS: 4, 10h, 40h for 1, 2, 4.
   static constexpr uint8_t txreq(uint8_t buffer) {
-    return static_cast<uint8_t>(0x04U << (2U * buffer));
+    return static_cast<uint8_t>(4U * buffer * buffer);
   }
 };
 
@@ -104,10 +106,12 @@ struct RxControl {
   static constexpr uint8_t settings = 0x60 | rollover;
 };
 
-/// SIDL, DLC of a buffer.
-constexpr uint8_t extended_bit = 0x08;         // EXIDE, IDE
-constexpr uint8_t standard_remote_bit = 0x10;  // SRR, received standard frames only
-constexpr uint8_t remote_bit = 0x40;           // RTR: to be sent, and in received extended frames
+enum class Mode : uint8_t {
+  normal = 0x00,
+  loopback = 0x40,
+  listen_only = 0x60,
+  configuration = 0x80,
+};
 
 /// CANCTRL (register 10-1) and the mode field that CANSTAT shares with it.
 struct Control {
@@ -116,14 +120,13 @@ struct Control {
   static constexpr uint8_t one_shot = 0x08;
   /// CLKEN and CLKPRE as a reset leaves them. Not 0, so that a line stuck at 0 is noticed.
   static constexpr uint8_t clock_out = 0x07;
+  /// What a reset leaves.
+  static constexpr uint8_t after_reset = static_cast<uint8_t>(Mode::configuration) | clock_out;
+  static constexpr uint8_t of(Mode mode, bool one_shot_too) {
+    return static_cast<uint8_t>(static_cast<uint8_t>(mode) | clock_out |
+                                (one_shot_too ? one_shot : uint8_t{0}));
+  }
 };
-enum class Mode : uint8_t {
-  normal = 0x00,
-  loopback = 0x40,
-  listen_only = 0x60,
-  configuration = 0x80,
-};
-
 /// CNF1..3 (registers 5-1 to 5-3).
 ///   CNF1 = SJW-1 in 7..6, BRP in 5..0 | CNF2 = BTLMODE, SAM, PS1-1 in 5..3, PropSeg-1 in 2..0 |
 ///   CNF3 = PS2-1 in 2..0
@@ -137,6 +140,18 @@ struct Cnf {
   }
   static constexpr uint8_t cnf3(const BitTiming& t) {
     return static_cast<uint8_t>(t.phase_seg2 - 1U);
+  }
+  /// @param cnf CNF3, CNF2, CNF1.
+  static uint16_t clocks_per_bit(const uint8_t* cnf) {
+    const uint8_t quanta = static_cast<uint8_t>(1U + (cnf[1] & 7U) + 1U + ((cnf[1] >> 3) & 7U) + 1U +
+                                                (cnf[0] & 7U) + 1U);
+    return static_cast<uint16_t>(2U * quanta * ((cnf[2] & 0x3FU) + 1U));
+  }
+  /// All three: 00 CNF1 CNF2 CNF3; 0 for a timing that is not valid, and never else.
+  static constexpr uint32_t word(const BitTiming& t) {
+    return is_valid(t) ? (static_cast<uint32_t>(cnf1(t)) << 16) |
+                             (static_cast<uint32_t>(cnf2(t)) << 8) | cnf3(t)
+                       : 0U;
   }
 };
 

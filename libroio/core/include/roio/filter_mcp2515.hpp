@@ -34,6 +34,19 @@ struct Mcp2515Filters {
   static constexpr uint8_t mask_of(uint8_t filter) { return filter < 2 ? 0 : 1; }
 };
 
+/// One mask and two filters for RXB0, which RXB1 repeats: what a driver needs to keep the order of
+/// frames. As identifiers; mcp2515_register() makes registers of them.
+struct Mcp2515FilterPair {
+  static constexpr uint32_t extended_only = UINT32_C(1) << 31;  ///< In a filter: EXIDE.
+
+  uint32_t mask;
+  uint32_t filter[2];
+  bool exact;  ///< As in Mcp2515Filters.
+
+  /// All six registers: the second filter is in RXF1, RXF3 and RXF5.
+  operator Mcp2515Filters() const;
+};
+
 /// The 29 bits of an identifier (or mask) as the chip keeps them, EXIDE clear:
 ///   SIDH 7..0 = id 28..21 | SIDL 7..5 = id 20..18, 1..0 = id 17..16 | EID8 = id 15..8 | EID0 =
 ///   id 7..0
@@ -45,6 +58,16 @@ inline void to_mcp2515_registers(uint32_t id, uint8_t registers[4]) {
   registers[1] = static_cast<uint8_t>(((middle << 3) & 0xE0) | (middle & 0x03));
   registers[2] = static_cast<uint8_t>(id >> 8);
   registers[3] = static_cast<uint8_t>(id);
+}
+
+/// The same for one register: 0..3 for SIDH, SIDL, EID8, EID0; bit 31 becomes EXIDE. For constants.
+constexpr uint8_t mcp2515_register(uint32_t tagged_id, uint8_t index) {
+  return index == 0   ? static_cast<uint8_t>(tagged_id >> 21)
+         : index == 1 ? static_cast<uint8_t>(((tagged_id >> 13) & 0xE0U) |
+                                             ((tagged_id >> 16) & 0x03U) |
+                                             ((tagged_id >> 28) & Mcp2515Filters::exide))
+         : index == 2 ? static_cast<uint8_t>(tagged_id >> 8)
+                      : static_cast<uint8_t>(tagged_id);
 }
 
 /// The inverse of to_mcp2515_registers(); other bits of SIDL are ignored.
@@ -232,15 +255,11 @@ inline void judge(Mcp2515Filters& image, const FilterRule* begin, const FilterRu
   }
 }
 
-/// One mask and two filters, in both buffers.
-inline void fill(Mcp2515Filters& image, uint32_t mask, uint32_t first, uint32_t second) {
-  for (auto& registers : image.mask) {
-    to_mcp2515_registers(mask, registers);
-  }
-  for (uint8_t f = 0; f < Mcp2515Filters::filter_count; ++f) {
-    to_mcp2515_registers((f == 1 ? second : first) & mask, image.filter[f]);
-    image.filter[f][1] |= Mcp2515Filters::exide;
-  }
+constexpr Mcp2515FilterPair filter_pair(uint32_t mask, uint32_t first, uint32_t second) {
+  return Mcp2515FilterPair{mask,
+                           {(first & mask) | Mcp2515FilterPair::extended_only,
+                            (second & mask) | Mcp2515FilterPair::extended_only},
+                           true};
 }
 
 /// The mask that is left when rules are shared out over two filters: bit r of `second` puts rule r
@@ -324,10 +343,10 @@ Mcp2515Filters fit_mcp2515(const FilterProgram<Capacity>& program) {
 /// order of frames. Never rejects what the program accepts; where two filters behind one mask
 /// cannot say it exactly, lets through as few more identifiers as can be with each rule whole in
 /// one filter, for up to 8 rules; a longer program has its closest rules joined first. An empty
-/// program accepts one identifier that nobody sends. in_order is always true. At most 128 ways are
-/// looked at; no heap, no recursion but for `exact`.
+/// program accepts one identifier that nobody sends. At most 128 ways are looked at; no heap, no
+/// recursion but for `exact`.
 template <uint8_t Capacity>
-Mcp2515Filters fit_mcp2515_in_order(const FilterProgram<Capacity>& program) {
+Mcp2515FilterPair fit_mcp2515_in_order(const FilterProgram<Capacity>& program) {
   FilterRule rules[Capacity == 0 ? 1 : Capacity];
   const uint8_t count = detail::rules_to_fit(program, rules);
   // Rule 0 is in the first filter: the other half of the ways are the same with names changed. Two
@@ -348,36 +367,40 @@ Mcp2515Filters fit_mcp2515_in_order(const FilterProgram<Capacity>& program) {
   while (best != 0 && ((static_cast<unsigned>(best) >> other) & 1U) == 0) {
     ++other;
   }
-  Mcp2515Filters image;
-  detail::fill(image, detail::shared_mask(rules, count, best), rules[0].match, rules[other].match);
+  Mcp2515FilterPair pair = detail::filter_pair(detail::shared_mask(rules, count, best),
+                                               rules[0].match, rules[other].match);
+  Mcp2515Filters image = pair;
   detail::judge(image, program.begin(), program.end());
-  return image;
+  pair.exact = image.exact;
+  return pair;
 }
 
-/// The image of a plain node: its own address, and broadcasts to its own subnet. Accepts
+/// The filters of a plain node: its own address, and broadcasts to its own subnet. Accepts
 /// what interest_of(own), compiled and fitted, does, for a fraction of the flash.
 /// @param own a valid source address; of another one the low bits are taken.
-inline Mcp2515Filters mcp2515_filters_of(Address own) {
-  constexpr uint32_t mask = DestinationSubnetField::mask() | DestinationNodeField::mask();
-  Mcp2515Filters image;
-  detail::fill(image, mask,
-               DestinationSubnetField::put(own.subnet) | DestinationNodeField::put(own.node),
-               DestinationSubnetField::put(own.subnet) | DestinationNodeField::put(broadcast_node));
-  image.exact = true;
-  image.in_order = true;
-  return image;
+constexpr Mcp2515FilterPair mcp2515_filters_of(Address own) {
+  return detail::filter_pair(
+      DestinationSubnetField::mask() | DestinationNodeField::mask(),
+      DestinationSubnetField::put(own.subnet) | DestinationNodeField::put(own.node),
+      DestinationSubnetField::put(own.subnet) | DestinationNodeField::put(broadcast_node));
 }
 
-/// The image that lets every frame through, standard and remote ones, too: for a sniffer. By
-/// filters that compare nothing, not by RXM = 11, which also hands out the beginnings of broken
-/// frames.
-inline Mcp2515Filters mcp2515_filters_of_everything() {
+/// The filters that let every frame through, standard and remote ones, too: for a sniffer. They
+/// compare nothing; RXM = 11 would also hand out the beginnings of broken frames. Without EXIDE a
+/// filter takes standard frames only, so one of each kind is needed.
+constexpr Mcp2515FilterPair mcp2515_filters_of_everything() {
+  return Mcp2515FilterPair{0, {0, Mcp2515FilterPair::extended_only}, true};
+}
+
+inline Mcp2515FilterPair::operator Mcp2515Filters() const {
   Mcp2515Filters image;
-  detail::fill(image, 0, 0, 0);
-  // Without EXIDE: standard frames only. The others let extended ones through.
-  image.filter[0][1] = 0;
-  image.filter[2][1] = 0;
-  image.exact = true;
+  for (uint8_t byte = 0; byte < 4; ++byte) {
+    image.mask[0][byte] = image.mask[1][byte] = mcp2515_register(mask, byte);
+    for (uint8_t f = 0; f < Mcp2515Filters::filter_count; ++f) {
+      image.filter[f][byte] = mcp2515_register(filter[f & 1U], byte);
+    }
+  }
+  image.exact = exact;
   image.in_order = true;
   return image;
 }

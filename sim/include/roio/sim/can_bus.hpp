@@ -75,6 +75,31 @@ class CanBus : private Controller::Monitor {
   /// turn.
   void at(SimTime time, std::function<void()> action);
   void after(SimTime span, std::function<void()> action) { at(now_ + span, std::move(action)); }
+  /// Something that is simulated beside the bus and keeps in step with it, such as a processor.
+  class Companion {
+   public:
+    Companion() = default;
+    Companion(const Companion&) = delete;
+    Companion& operator=(const Companion&) = delete;
+    virtual ~Companion() = default;
+    /// Called when its time comes, after the actions of that time and before the bits. It sets its
+    /// next time, and must not run the bus.
+    virtual void step() = 0;
+
+    /// When to be called next; none: not at all.
+    std::optional<SimTime> next;
+    /// How long after such a call, at the earliest, other companions may feel anything of it as
+    /// long as the bus is idle.
+    SimTime reach{0};
+  };
+  /// Companions of one time are called in the order in which they were attached. One must be
+  /// detached before it ends.
+  void attach(Companion& companion) { companions_.push_back(&companion); }
+  void detach(Companion& companion) { std::erase(companions_, &companion); }
+  /// Until then nothing happens that this companion could feel, but what it does itself: the next
+  /// action, the reach of another companion, the next bit that begins or is sampled, the end of the
+  /// run. So far it may run ahead. Outside of a run: now.
+  [[nodiscard]] SimTime quiet_until(const Companion& companion) const;
 
   /// A controller may join and leave at any time; it must leave before it ends. Joining again
   /// changes its timing.
@@ -121,7 +146,11 @@ class CanBus : private Controller::Monitor {
   };
   static bool later(const Action& a, const Action& b);
 
+  void run_to(SimTime time);
+  void run_due();
+  [[nodiscard]] std::optional<SimTime> next_call() const;
   [[nodiscard]] bool quiet() const;
+  [[nodiscard]] bool is_idle(const Domain* next) const;
   [[nodiscard]] std::uint8_t wire() const;
   [[nodiscard]] Domain* next_domain() const;
   void skip_to(SimTime time);
@@ -141,9 +170,11 @@ class CanBus : private Controller::Monitor {
   void on_arbitration_lost(const Controller& sender) override;
 
   SimTime now_{0};
+  SimTime run_end_{0};  // of the innermost run
   std::vector<std::unique_ptr<Domain>> domains_;
   std::vector<Action> actions_;  // a heap, the earliest first
   std::uint64_t actions_so_far_ = 0;
+  std::vector<Companion*> companions_;
   bool within_bit_ = false;
   bool left_within_bit_ = false;
   std::vector<Joining> joining_;  // within the bit under way

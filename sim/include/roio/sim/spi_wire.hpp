@@ -97,6 +97,7 @@ class ChipPort {
   explicit ChipPort(SpiWire& wire) : wire_(&wire) {}
 
   bool interrupt_line_is_low() { return wire_->interrupt_line_is_low(); }
+  void pause(std::uint16_t span_us) { wire_->pass(std::chrono::microseconds(span_us)); }
   /// Reading the clock takes a microsecond.
   std::uint32_t microseconds() {
     wire_->pass(std::chrono::microseconds(1));
@@ -109,8 +110,24 @@ class ChipPort {
     explicit Transaction(ChipPort& port) : wire_(*port.wire_) { wire_.select(); }
     Transaction(const Transaction&) = delete;
     Transaction& operator=(const Transaction&) = delete;
-    ~Transaction() { wire_.deselect(); }
+    ~Transaction() { end(); }
+    void end() {
+      if (!ended_) {
+        wire_.deselect();
+        ended_ = true;
+      }
+    }
     std::uint8_t exchange(std::uint8_t out) { return wire_.exchange(out); }
+    void send(const std::uint8_t* bytes, std::uint8_t count) {
+      for (; count > 0; --count) {
+        wire_.exchange(*bytes++);
+      }
+    }
+    void receive(std::uint8_t* bytes, std::uint8_t count) {
+      for (; count > 0; --count) {
+        *bytes++ = wire_.exchange(0);
+      }
+    }
     void restart() {
       wire_.deselect();
       wire_.select();
@@ -118,6 +135,7 @@ class ChipPort {
 
    private:
     SpiWire& wire_;
+    bool ended_ = false;
   };
 
   class Uninterrupted {

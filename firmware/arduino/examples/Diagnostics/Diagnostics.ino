@@ -1,0 +1,143 @@
+/*
+  Diagnostics: says every second what is wrong with this node and its bus, and what to do.
+
+  Wiring
+    MCP2515 module    Uno    Leonardo    Mega
+    VCC               5V     5V          5V
+    GND               GND    GND         GND
+    SCK               13     ICSP 3      52
+    SI  (MOSI)        11     ICSP 4      51
+    SO  (MISO)        12     ICSP 1      50
+    CS                10     10          10
+  Between CANH and CANL belong 120 ohms at each end of the bus: 60 ohms in all, with power off.
+
+  Address 0.250, 500 kbit/s, a 16 MHz crystal on the module. Serial at 115200.
+
+  What it does: sends a message a second to itself, 0.250, which others acknowledge and ignore.
+  Needs a second node on the bus, with any sketch. Prints one of these, as it is now:
+    NO CHIP  WRONG CRYSTAL  BUS STUCK  BUS-OFF  NO ACKNOWLEDGEMENT  ERRORS  ALL IS WELL
+  and, when the chip works, what was counted since the start.
+*/
+#include <Roio.h>
+
+constexpr uint32_t crystal = 16000000;  // 8000000 when the module's crystal says 8.000
+constexpr uint32_t bitrate = 500000;
+constexpr Roio::Address own = {0, 250};
+constexpr uint32_t periodMs = 1000;
+constexpr uint8_t passiveLimit = 128;  // of an error counter, from which a node is error-passive
+
+struct Options : RoioOptions {
+  static constexpr bool diagnoses = true;  // errors on the bus are counted
+};
+
+RoioOn<10, -1, Options> roio;  // CS
+uint16_t sentBefore = 0;
+uint16_t busOffsBefore = 0;
+
+// --- starting ------------------------------------------------------------------------------------
+
+void printStartTrouble(Roio::Status status, uint32_t measuredHz) {
+  switch (status) {
+    case Roio::Status::wrong_clock:
+      Serial.print(F("WRONG CRYSTAL: about "));
+      Serial.print((measuredHz + 500000) / 1000000);
+      Serial.print(F(" MHz, and this sketch says "));
+      Serial.print(crystal / 1000000);
+      Serial.println(F(". Change the line with crystal."));
+      break;
+    case Roio::Status::wrong_mode:
+      Serial.println(F("BUS STUCK: it is never quiet. Does CANH or CANL touch 5V, GND or the other?"));
+      break;
+    default:
+      Serial.println(F("NO CHIP: check CS, SCK, SI and SO (swapped?), 5V and GND."));
+      break;
+  }
+}
+
+bool begin() {
+  const Roio::BitTiming timing = Roio::bitTiming<crystal, bitrate>();
+  uint32_t measuredHz = 0;
+  Roio::Status status = roio.checkClock(timing, crystal, measuredHz);
+  if (status == Roio::Status::ok) {
+    status = roio.begin(timing, own);
+  }
+  if (status != Roio::Status::ok) {
+    printStartTrouble(status, measuredHz);
+  }
+  return status == Roio::Status::ok;
+}
+
+// --- once a second -------------------------------------------------------------------------------
+
+void printVerdict(bool wasBusOff, bool wasSent, bool hearsErrors) {
+  if (wasBusOff) {
+    Serial.println(F("BUS-OFF: what it sends is not seen on the bus. Do CANH and CANL touch?"));
+  } else if (!wasSent && hearsErrors) {
+    Serial.println(F("BUS STUCK, OR OTHER RATE: it hears nonsense only. Do all nodes run at one rate?"));
+  } else if (!wasSent) {
+    Serial.println(F("NO ACKNOWLEDGEMENT: nobody hears it. Is another node on? CANH to CANH, CANL to CANL?"));
+  } else if (roio.state() != Roio::State::active) {
+    Serial.println(F("ERRORS: it works, but not at the first try. 120 ohms at both ends? A loose cable?"));
+  } else {
+    Serial.println(F("ALL IS WELL."));
+  }
+}
+
+void printNumber(const __FlashStringHelper* name, uint16_t number) {
+  Serial.print(name);
+  Serial.print(number);
+}
+
+void printCounters(uint8_t transmitErrors, uint8_t receiveErrors) {
+  const auto& counters = roio.counters();
+  printNumber(F("  sent "), counters.sent);
+  printNumber(F(", received "), counters.received);
+  printNumber(F(", lost "), counters.overflows);
+  printNumber(F(", bus-offs "), counters.bus_offs);
+  printNumber(F("; error counters: transmit "), transmitErrors);
+  printNumber(F(", receive "), receiveErrors);
+  Serial.println();
+}
+
+void report() {
+  uint8_t transmitErrors = 0;
+  uint8_t receiveErrors = 0;
+  roio.errorCounters(transmitErrors, receiveErrors);
+  const auto& counters = roio.counters();
+  const bool wasBusOff =
+      roio.state() == Roio::State::bus_off || counters.bus_offs != busOffsBefore;
+  printVerdict(wasBusOff, counters.sent != sentBefore, receiveErrors >= passiveLimit);
+  printCounters(transmitErrors, receiveErrors);
+  sentBefore = counters.sent;
+  busOffsBefore = counters.bus_offs;
+}
+
+// Nobody has this address but itself: all acknowledge the message, and none takes it.
+void sendTest() {
+  const Roio::Status status = roio.send(Roio::Message(own, nullptr, 0));
+  if (status != Roio::Status::ok && status != Roio::Status::full) {  // full: some still wait
+    Serial.println(F("The test message was refused"));
+  }
+}
+
+void setup() {
+  Serial.begin(115200);
+}
+
+void loop() {
+  static uint32_t last = 0;
+  Roio::Message message;
+  while (roio.receive(message) == Roio::Status::ok) {
+    // Counted by now, and that is all.
+  }
+  if (millis() - last < periodMs) {
+    return;
+  }
+  last = millis();
+  if (roio.running()) {
+    report();
+  }
+  if (roio.running() || begin()) {
+    sendTest();
+  }
+}

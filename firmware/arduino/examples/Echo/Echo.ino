@@ -1,0 +1,44 @@
+/*
+  Echo: sends each message back to whoever sent it. The smallest whole node; try it with
+  roio-cli, or from a second Arduino.
+
+  Wiring
+    MCP2515 module    Uno    Leonardo    Mega
+    VCC               5V     5V          5V
+    GND               GND    GND         GND
+    SCK               13     ICSP 3      52
+    SI  (MOSI)        11     ICSP 4      51
+    SO  (MISO)        12     ICSP 1      50
+    CS                10     10          10
+  Between CANH and CANL belong 120 ohms at each end of the bus.
+
+  Address 0.2, 500 kbit/s, a 16 MHz crystal on the module.
+
+  What it does: of each message to 0.2 and to 0.*, length, bytes and priority come back.
+*/
+#include <Roio.h>
+
+RoioOn<10> roio;  // CS
+Roio::Message message;
+bool waiting;  // for room in the chip: until then the message is kept
+
+bool begin() {
+  // With an 8 MHz crystal: Roio::bitTiming<8000000, 500000>(), Roio::Address{0, 2}
+  return roio.begin(500, 2, 0) == Roio::Status::ok;
+}
+
+void setup() {}
+
+void loop() {
+  // The first time, and again after the chip was without power.
+  if (!roio.running() && !begin()) {
+    return;
+  }
+  if (!waiting && roio.receive(message) == Roio::Status::ok) {
+    message.setDestination(message.source());
+    waiting = true;
+  }
+  if (waiting) {
+    waiting = roio.send(message) != Roio::Status::ok;
+  }
+}

@@ -1,0 +1,83 @@
+/*
+  ServoController: three servos, an arm for example, moved by messages.
+
+  Wiring
+    MCP2515 module    Uno    Leonardo    Mega
+    VCC               5V     5V          5V
+    GND               GND    GND         GND
+    SCK               13     ICSP 3      52
+    SI  (MOSI)        11     ICSP 4      51
+    SO  (MISO)        12     ICSP 1      50
+    CS                10     10          10
+  Servo signals: pins 3, 5, 6. Servos have a 5 V supply of their own, its ground joined to the
+  Arduino's. Between CANH and CANL belong 120 ohms at each end of the bus.
+
+  Address 0.2, 500 kbit/s, a 16 MHz crystal on the module.
+
+  What it does: the servos go to 45 degrees. Then, messages to 0.2:
+    3 bytes   an angle for each servo, 0 to 180 degrees
+    0 bytes   a question: the answer is how many messages were refused, 2 bytes, high byte first
+  Any other length, or an angle above 180: the message is refused, no servo moves, and it is
+  counted. So is a question that comes while two answers still wait for the bus. Messages to all,
+  0.*, are not meant for an arm: it ignores them.
+*/
+#include <Roio.h>
+
+#include "TimerServo.h"  // without an AVR: #include <Servo.h>, and Servo in place of TimerServo
+
+constexpr uint32_t crystal = 16000000;  // 8000000 when the module's crystal says 8.000
+constexpr uint32_t bitrate = 500000;
+constexpr Roio::Address own = {0, 2};
+
+constexpr uint8_t servoCount = 3;
+constexpr uint8_t servoPins[servoCount] = {3, 5, 6};
+constexpr uint8_t startAngle = 45;
+constexpr uint8_t largestAngle = 180;
+
+RoioOn<10> roio;  // CS
+TimerServo servos[servoCount];
+uint16_t refused = 0;
+
+// All or none: half an order could move the arm where nobody wanted it.
+bool move(const Roio::Message& message) {
+  if (message.length() != servoCount) {
+    return false;
+  }
+  for (uint8_t i = 0; i < servoCount; ++i) {
+    if (message[i] > largestAngle) {
+      return false;
+    }
+  }
+  for (uint8_t i = 0; i < servoCount; ++i) {
+    servos[i].write(message[i]);
+  }
+  return true;
+}
+
+bool tellRefused(Roio::Address asker) {
+  const uint8_t answer[] = {highByte(refused), lowByte(refused)};
+  return roio.send(Roio::Message(asker, answer, sizeof answer)) == Roio::Status::ok;
+}
+
+bool obey(const Roio::Message& message) {
+  return message.length() == 0 ? tellRefused(message.source()) : move(message);
+}
+
+void setup() {
+  for (uint8_t i = 0; i < servoCount; ++i) {
+    servos[i].write(startAngle);
+    servos[i].attach(servoPins[i]);
+  }
+}
+
+void loop() {
+  // First of all, and again when the chip was without power.
+  if (!roio.running() &&
+      roio.begin(Roio::bitTiming<crystal, bitrate>(), own) != Roio::Status::ok) {
+    return;
+  }
+  Roio::Message message;
+  if (roio.receive(message) == Roio::Status::ok && !message.isBroadcast() && !obey(message)) {
+    ++refused;
+  }
+}

@@ -1,0 +1,3 @@
+// What Arduino itself costs.
+void setup() {}
+void loop() {}

@@ -1,0 +1,172 @@
+#!/usr/bin/env python3
+"""Boards alone: what they show, and what can be done to them."""
+
+import json
+import os
+import select
+
+from sim_driver import LEONARDO, MEGA, UNO, SimTest, main
+
+
+class ShowTest(SimTest):
+    def test_a_board_alone_and_its_end(self):
+        self.assertEqual(
+            self.run_sim("--for", "0.25", "--speed", "max", "uno=" + UNO),
+            (0,
+             "uno: serial: node 2\n"
+             "uno: can: normal, 500000 bit/s\n"
+             "bus: 0.250 s simulated, 0 frames, load 0.0 %, 0 errors\n", ""),
+        )
+
+    def test_names_that_were_not_given(self):
+        status, out, err = self.run_sim(
+            "--for", "0.1", "--speed", "max",
+            "uno=" + UNO, "uno2:micro=" + LEONARDO, "uno=" + UNO, "mega=" + MEGA,
+        )
+        self.assertEqual((status, err), (0, ""))
+        self.assertEqual(
+            sorted(line for line in out.splitlines() if "serial" in line),
+            sorted(f"{name}: serial: node 2" for name in ("mega", "uno", "uno2", "uno3")),
+        )
+
+    def test_json_lines(self):
+        status, out, err = self.run_sim(
+            "--json", "--speed", "max", "--for", "0.3", "a:uno=" + UNO,
+            "--do", "wait 0.1", "--do", 'a serial "Grüße" \x1b\\',
+        )
+        self.assertEqual((status, err), (0, ""))
+        lines = [json.loads(line) for line in out.splitlines()]
+        for line in lines:
+            self.assertTrue(0 < line.pop("time") <= 0.3, line)
+        self.assertEqual(lines, [
+            {"type": "serial", "board": "a", "uart": 0, "text": "node 2"},
+            {"type": "can", "board": "a", "state": "normal", "bitrate": 500000},
+            {"type": "serial", "board": "a", "uart": 0, "text": 'said "Grüße" \x1b\\'},
+            {"type": "summary", "frames": 0, "load": 0.0, "errors": 0, "behind": 0.0},
+        ])
+
+    def test_what_a_board_says_does_not_move_the_cursor(self):
+        out = self.run_sim("--speed", "max", "--for", "0.3", "a:uno=" + UNO, "--do", "wait 0.1",
+                           "--do", "a serial \x1b[2J\t\x7f")[1]
+        self.assertIn("a: serial: said \\x1B[2J\t\\x7F\n", out)
+
+    def test_a_chip_at_another_rate_than_the_bus(self):
+        status, out, err = self.run_sim("--rate", "250000", "--for", "0.1", "--speed", "max",
+                                        "a:uno=" + UNO)
+        self.assertEqual(
+            (status, err),
+            (0, "roio-sim: a: its chip is set to 500000 bit/s, the bus runs at 250000 (see --rate, "
+                "and --crystal)\n"),
+        )
+        self.assertIn("a: can: normal, 500000 bit/s\n", out)
+
+    def test_a_crystal_of_its_own(self):
+        out = self.run_sim("--crystal", "b:8000000", "--for", "0.1", "--speed", "max",
+                           "a:uno=" + UNO, "b:leonardo=" + LEONARDO)[1]
+        self.assertIn("a: can: normal, 500000 bit/s\n", out)
+        self.assertIn("b: can: normal, 250000 bit/s\n", out)
+
+    def test_chip_select_on_another_pin_is_not_found(self):
+        status, out, err = self.run_sim("--cs", "9", "--for", "0.1", "--speed", "max",
+                                        "uno=" + UNO)
+        self.assertEqual((status, err), (0, ""))
+        self.assertNotIn("can:", out)
+
+
+class CommandTest(SimTest):
+    BOTH = ("--do", "b hold 4", "--do", "wait 0.02", "--do", "b release 4", "a:uno=" + UNO,
+            "b:uno=" + UNO)
+
+    def test_two_boards_talk(self):
+        sim = self.sim(*self.BOTH)
+        sim.wait_for("a: can: normal, 500000 bit/s", "b: can: normal, 500000 bit/s")
+        sim.say("a serial ping")
+        # The question at 0.3, the answer at 0.2: identifier as the chip has it, length, data.
+        sim.wait_for("b: serial: 80086002 01 70", "a: serial: 80084003 01 50")
+        sim.say("quit")
+        status, out, err = sim.result()
+        self.assertEqual((status, err), (0, ""))
+        self.assertRegex(out, r"^bus: [\d.]+ s simulated, 2 frames, load [\d.]+ %, 0 errors\n$")
+
+    def test_commands_come_in_their_order_and_time(self):
+        status, out, err = self.run_sim("--speed", "max", "uno=" + UNO, stdin="\n".join([
+            "wait 0.1", "uno serial one", "wait 0.1", "uno  serial two  words ", "wait 0.25",
+            "uno reset", "wait 0.1", "quit", "uno serial never"]))
+        self.assertEqual((status, err), (0, ""))
+        lines = out.splitlines()
+        self.assertEqual(
+            [line for line in lines if "serial" in line],
+            ["uno: serial: " + text for text in ("node 2", "said one", "said two  words ", "node 2")])
+        self.assertRegex(lines[-1], r"^bus: 0\.55\d s simulated")
+
+    def test_a_chip_without_its_cable(self):
+        # Its INT and SO float: the program reads 0xFF and takes it for frames.
+        status, out, err = self.run_sim(
+            "--speed", "max", "--for", "0.2", "uno=" + UNO, "--do", "wait 0.1", "--do",
+            "uno unplug", "--do", "wait 0.01", "--do", "uno plug")
+        self.assertEqual((status, err), (0, ""))
+        self.assertIn("uno: can: normal, 500000 bit/s\n", out)
+
+    # what is typed, the line on standard error
+    NOT_UNDERSTOOD = [
+        ("jump", '"jump": expected press, hold, release, pin, analog, serial, reset, unplug or plug'),
+        ("uno jump", '"uno jump": expected press, hold, release, pin, analog, serial, reset, unplug or '
+                     'plug, found "jump"'),
+        ("uno press", '"uno press": expected a pin such as 4 or A0'),
+        ("uno press 4 5", '"uno press 4 5": expected nothing more, found "5"'),
+        ("uno pin 4 up", '"uno pin 4 up": expected high, low or open, found "up"'),
+        ("uno analog 0 1", '"uno analog 0 1": expected an analog input such as A0, found "0"'),
+        ("uno analog A0 512", '"uno analog A0 512": expected 0..1 (0.5 is the middle) or volts such as '
+                              '2.5V, 0..5, found "512"'),
+        ("uno serialX hello", '"uno serialX hello": expected serial, or serial0 to serial3, found '
+                              '"serialX"'),
+        ("wait", '"wait": expected seconds, above 0 and at most 1000000, such as 0.25, found ""'),
+        ("arm reset", 'no board "arm"; there is uno'),
+        ("uno press 20", "a Uno has no pin 20"),
+        ("uno analog A9 1", "a Uno has no analog input A9"),
+        ("uno serial1 hello", "a Uno has no UART 1"),
+    ]
+
+    def test_commands_that_are_not_understood(self):
+        status, _, err = self.run_sim(
+            "--speed", "max", "uno=" + UNO,
+            stdin="".join(line + "\n" for line, _ in self.NOT_UNDERSTOOD) + "quit\n")
+        self.assertEqual(status, 1)
+        # Those that no board could understand are named when they are read, before any is done.
+        self.assertEqual(sorted(err.splitlines()),
+                         sorted("roio-sim: " + line for _, line in self.NOT_UNDERSTOOD))
+
+    def test_help(self):
+        status, _, err = self.run_sim("--speed", "max", "uno=" + UNO, stdin="help\nquit\n")
+        self.assertEqual(status, 0)
+        self.assertTrue(err.startswith("roio-sim: commands:\nNAME press PIN "), err)
+
+    def test_it_goes_on_without_an_input(self):
+        sim = self.sim("--for", "0.1", "--speed", "max", "uno=" + UNO, prefix=("sh", "-c", '"$0" "$@" <&-'))
+        self.assertEqual(sim.result()[::2], (0, "roio-sim: standard input: Bad file descriptor\n"))
+
+    def test_it_goes_on_at_the_end_of_its_input(self):
+        self.assertEqual(self.run_sim("--speed", "max", "--for", "0.1", "uno=" + UNO)[0], 0)
+
+
+class SerialPortTest(SimTest):
+    def test_a_terminal(self):
+        sim = self.sim("--serial-pty", "a", "a:uno=" + UNO)
+        line = sim.out.next()
+        self.assertRegex(line, r"^a: serial port: /dev/pts/\d+\n$")
+        terminal = os.open(line.split()[-1], os.O_RDWR | os.O_NOCTTY)
+        self.addCleanup(os.close, terminal)
+        sim.wait_for("a: can: normal, 500000 bit/s")
+        os.write(terminal, b"hello\n")
+        seen = b""
+        while b"said hello\r\n" not in seen:
+            self.assertNotEqual(select.select([terminal], [], [], 60)[0], [], seen)
+            seen += os.read(terminal, 100)
+        sim.say("quit")
+        status, out, err = sim.result()
+        self.assertEqual((status, err), (0, ""))
+        self.assertNotIn("serial", out)
+
+
+if __name__ == "__main__":
+    main()

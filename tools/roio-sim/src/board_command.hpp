@@ -1,0 +1,68 @@
+/// The commands that roio-sim takes while it runs, one a line. Pure functions.
+///
+///   sensors press 4          a button to ground, for 0.1 s        sensors hold 4, sensors release
+///   4 sensors pin 7 high       high, low or open                    sensors analog A0 0.5
+///   (or 2.5V) arm serial hello         the text and a line end, to the first UART (serial1 TEXT:
+///   to UART 1) arm reset                the reset button                     arm unplug, arm plug:
+///   the chip's cable wait 0.5                 what follows is done so much simulated time later
+///   quit, help
+#ifndef ROIO_SIM_TOOL_BOARD_COMMAND_HPP
+#define ROIO_SIM_TOOL_BOARD_COMMAND_HPP
+
+#include <cstdint>
+#include <optional>
+#include <roio/sim/time.hpp>
+#include <roio/text.hpp>
+#include <string>
+#include <string_view>
+#include <variant>
+
+namespace roio::sim_tool {
+
+struct PinName {
+  bool analog = false;  ///< "A0": the pin of analog input `number`.
+  int number = 0;
+};
+
+struct Press {
+  PinName pin;
+};
+struct SetPin {
+  PinName pin;
+  std::optional<bool> high;  ///< None: nothing drives it any more.
+};
+struct SetAnalog {
+  int channel = 0;
+  double volts = 0;
+};
+struct Serial {
+  std::optional<int> uart;  ///< None: the board's first.
+  std::string text;         ///< Without a line end.
+};
+struct Reset {};
+struct Plug {
+  bool in = true;
+};
+struct Wait {
+  sim::SimTime time;
+};
+struct Quit {};
+struct Help {};
+
+using Action = std::variant<Press, SetPin, SetAnalog, Serial, Reset, Plug, Wait, Quit, Help>;
+
+struct Instruction {
+  std::string board;  ///< Empty for wait, quit and help.
+  Action action;
+};
+
+/// @param line not blank.
+/// @return or an error that says what was expected, without the line.
+Parsed<Instruction> parse_instruction(std::string_view line);
+
+/// All commands, a line each.
+extern const char* const command_help;
+
+}  // namespace roio::sim_tool
+
+#endif

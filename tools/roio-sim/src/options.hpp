@@ -1,0 +1,36 @@
+/// What the words of roio-sim's command line ask for.
+#ifndef ROIO_SIM_TOOL_OPTIONS_HPP
+#define ROIO_SIM_TOOL_OPTIONS_HPP
+
+#include <cstdint>
+#include <optional>
+#include <roio/sim/board.hpp>
+#include <string>
+#include <vector>
+
+#include "board_command.hpp"
+
+namespace roio::sim_tool {
+
+struct BoardWish {
+  std::string name;
+  sim::BoardKind kind = sim::BoardKind::uno;
+  std::string elf;
+  sim::BoardOptions options;
+  bool serial_pty = false;
+};
+
+struct Options {
+  std::optional<std::string> bus;  ///< As roio::open() takes it; none: the boards are alone.
+  std::uint32_t bitrate_bps = 500'000;
+  double speed = 1;                       ///< Times real time; 0: as fast as it goes.
+  std::optional<sim::SimTime> end;        ///< Simulated time.
+  std::vector<BoardWish> boards;          ///< At least one.
+  std::vector<Instruction> instructions;  ///< Done first of all.
+  bool json = false;
+  bool verbose = false;
+};
+
+}  // namespace roio::sim_tool
+
+#endif

@@ -1,0 +1,293 @@
+#include "panel.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <set>
+#include <span>
+#include <stdexcept>
+
+#include "record_format.hpp"
+
+namespace roio::sim_tool {
+namespace {
+
+using namespace std::chrono_literals;
+
+// Shorter is no level to a person, but a servo's pulse, or a wire that something else is on.
+constexpr sim::SimTime shortest_level = 10ms;
+constexpr sim::SimTime shortest_pulse = 450us;
+constexpr sim::SimTime longest_pulse = 2600us;
+constexpr sim::SimTime shortest_period = 12ms;
+constexpr sim::SimTime longest_period = 30ms;
+constexpr sim::SimTime between_servo_lines = 100ms;
+constexpr double servo_play_degrees = 0.75;  // so that one between two degrees does not flicker
+constexpr sim::SimTime press_time = 100ms;
+constexpr sim::SimTime unfinished_line_time = 200ms;
+constexpr std::size_t longest_line = 1024;
+
+int first_uart(sim::BoardKind kind) {
+  return kind == sim::BoardKind::leonardo ? 1 : 0;
+}
+
+// Arduino's numbers of SS, MOSI, MISO and SCK.
+std::set<int> spi_pins(sim::BoardKind kind) {
+  switch (kind) {
+    case sim::BoardKind::uno:
+      return {10, 11, 12, 13};
+    case sim::BoardKind::leonardo:
+      return {14, 15, 16, 17};
+    case sim::BoardKind::mega:
+      break;
+  }
+  return {50, 51, 52, 53};
+}
+
+sim::BoardOptions board_options(const BoardWish& wish) {
+  sim::BoardOptions options = wish.options;
+  options.name = wish.name;
+  return options;
+}
+
+const char* mode_name(sim::Mcp2515Chip::OperationMode mode) {
+  using Mode = sim::Mcp2515Chip::OperationMode;
+  switch (mode) {
+    case Mode::normal:
+      return "normal";
+    case Mode::sleep:
+      return "asleep";
+    case Mode::loopback:
+      return "loopback";
+    case Mode::listen_only:
+      return "listen-only";
+    case Mode::configuration:
+      break;
+  }
+  return "configuration";
+}
+
+}  // namespace
+
+Panel::Panel(sim::CanBus& bus, const BoardWish& wish, std::uint32_t bitrate_bps, Report& report)
+    : bus_(bus),
+      bitrate_bps_(bitrate_bps),
+      report_(report),
+      board_(bus, wish.kind, wish.elf, board_options(wish)),
+      first_uart_(first_uart(wish.kind)),
+      state_(can_state()),
+      state_shown_(state_) {
+  watch_pins(wish);
+  watch_serial(wish);
+}
+
+void Panel::watch_pins(const BoardWish& wish) {
+  std::set<int> busy = spi_pins(wish.kind);
+  busy.insert(wish.options.chip_select_pin);
+  for (int number = 0; number < board_.pins(); ++number) {
+    if (!busy.contains(number)) {
+      pins_[number] = {};
+      board_.on_pin(number, [this, number](sim::SimTime time, bool high) {
+        pin_changed(number, time, high);
+      });
+    }
+  }
+}
+
+void Panel::watch_serial(const BoardWish& wish) {
+  const int last_uart = wish.kind == sim::BoardKind::mega ? 3 : first_uart_;
+  for (int uart = first_uart_; uart <= last_uart; ++uart) {
+    if (uart == first_uart_ && wish.serial_pty) {
+      terminal_ = std::make_unique<sim::SerialPty>(bus_, board_, uart);
+      report_.terminal(name(), terminal_->path());
+    } else {
+      board_.on_serial(uart, [this, uart](std::uint8_t byte) { serial_byte(uart, byte); });
+    }
+  }
+}
+
+// --- what it shows -------------------------------------------------------------------------------
+
+void Panel::pin_changed(int number, sim::SimTime time, bool high) {
+  Pin& pin = pins_[number];
+  if (high) {
+    pin.is_regular =
+        pin.rise && time - *pin.rise >= shortest_period && time - *pin.rise <= longest_period;
+    pin.rise = time;
+  } else if (pin.rise) {
+    pulse_ended(pin, time - *pin.rise);
+  }
+  pin.high = high;
+  pin.changed = time;
+}
+
+void Panel::pulse_ended(Pin& pin, sim::SimTime width) {
+  if (!pin.is_regular || width < shortest_pulse || width > longest_pulse) {
+    pin.pulses = 0;
+    return;
+  }
+  const double angle = sim::servo_angle(width);
+  if (++pin.pulses >= 2 && (!pin.degrees || std::abs(angle - *pin.degrees) > servo_play_degrees)) {
+    pin.degrees = static_cast<int>(std::lround(angle));
+  }
+}
+
+void Panel::look() {
+  for (auto& [number, pin] : pins_) {
+    look_at_pin(number, pin);
+  }
+  for (auto& [uart, line] : lines_) {
+    if (!line.text.empty() && bus_.now() - line.last >= unfinished_line_time) {
+      end_line(uart, line);
+    }
+  }
+  look_at_chip();
+}
+
+void Panel::look_at_pin(int number, Pin& pin) {
+  const sim::SimTime now = bus_.now();
+  if (pin.high != pin.shown && now - pin.changed >= shortest_level) {
+    pin.shown = pin.high;
+    report_.pin(now, name(), number, pin.high);
+  }
+  if (pin.degrees != pin.degrees_shown &&
+      (!pin.degrees_shown || now - pin.degrees_time >= between_servo_lines)) {
+    pin.degrees_shown = pin.degrees;
+    pin.degrees_time = now;
+    report_.servo(now, name(), number, *pin.degrees);
+  }
+}
+
+void Panel::serial_byte(int uart, std::uint8_t byte) {
+  Line& line = lines_[uart];
+  line.last = bus_.now();
+  if (byte == '\n') {
+    end_line(uart, line);
+  } else if (byte != '\r') {
+    line.text.push_back(static_cast<char>(byte));
+    if (line.text.size() >= longest_line) {
+      end_line(uart, line);
+    }
+  }
+}
+
+void Panel::end_line(int uart, Line& line) {
+  report_.serial(line.last, name(), uart, uart == first_uart_, line.text);
+  line.text.clear();
+}
+
+Panel::CanState Panel::can_state() {
+  sim::Mcp2515Chip& chip = board_.chip();
+  switch (chip.controller().confinement()) {
+    case sim::Confinement::passive:
+      return {"error-passive", chip.bitrate_bps()};
+    case sim::Confinement::bus_off:
+      return {"bus-off", chip.bitrate_bps()};
+    case sim::Confinement::active:
+      break;
+  }
+  const bool takes_part = chip.mode() == sim::Mcp2515Chip::OperationMode::normal ||
+                          chip.mode() == sim::Mcp2515Chip::OperationMode::listen_only;
+  return {mode_name(chip.mode()), takes_part ? chip.bitrate_bps() : 0};
+}
+
+void Panel::look_at_chip() {
+  const CanState state = can_state();
+  if (state != state_) {
+    state_ = state;
+    state_since_ = bus_.now();
+  }
+  if (state_ == state_shown_ || bus_.now() - state_since_ < shortest_level) {
+    return;
+  }
+  state_shown_ = state_;
+  report_.can(bus_.now(), name(), state_.name, state_.bitrate_bps);
+  if (state_.bitrate_bps != 0 && state_.bitrate_bps / 1000 != bitrate_bps_ / 1000) {
+    note(name() + ": its chip is set to " + std::to_string(state_.bitrate_bps) +
+         " bit/s, the bus runs at " + std::to_string(bitrate_bps_) +
+         " (see --rate, and --crystal)");
+  }
+}
+
+void Panel::finish() {
+  look();
+  for (auto& [uart, line] : lines_) {
+    if (!line.text.empty()) {
+      end_line(uart, line);
+    }
+  }
+  if (const auto overflowed = board_.chip().events().overflowed; overflowed > 0) {
+    note(name() + ": " + cli::count_of(overflowed, "frame") +
+         " lost: the chip's buffers were full");
+  }
+  if (terminal_ && terminal_->lost() > 0) {
+    note(name() + ": " + cli::count_of(terminal_->lost(), "byte") +
+         " lost: nobody read its serial port");
+  }
+  for (const auto* violations : {&board_.violations(), &board_.chip().violations()}) {
+    if (!violations->empty()) {
+      note(name() + ": " + cli::count_of(violations->size(), "thing") +
+           " that the hardware does not put up with; the first: " + violations->front().what);
+    }
+  }
+}
+
+// --- what can be done to it ----------------------------------------------------------------------
+
+int Panel::number_of(const PinName& pin) const {
+  if (pin.analog) {
+    return board_.analog_pin(pin.number);
+  }
+  static_cast<void>(board_.pin(pin.number));  // refuses one that is not there
+  return pin.number;
+}
+
+void Panel::check(const Action& action) const {
+  if (const auto* const press = std::get_if<Press>(&action)) {
+    static_cast<void>(number_of(press->pin));
+  } else if (const auto* const set = std::get_if<SetPin>(&action)) {
+    static_cast<void>(number_of(set->pin));
+  } else if (const auto* const analog = std::get_if<SetAnalog>(&action)) {
+    static_cast<void>(board_.analog_pin(analog->channel));
+  } else if (const auto* const serial = std::get_if<Serial>(&action)) {
+    static_cast<void>(board_.serial_waiting(serial->uart.value_or(first_uart_)));
+  }
+}
+
+void Panel::apply(const Action& action) {
+  check(action);
+  std::visit([this](const auto& what) { do_action(what); }, action);
+}
+
+void Panel::do_action(const Press& press) {
+  const int number = number_of(press.pin);
+  board_.set_pin(number, false);
+  bus_.after(press_time, [this, number] { board_.release_pin(number); });
+}
+
+void Panel::do_action(const SetPin& set) {
+  if (set.high) {
+    board_.set_pin(number_of(set.pin), *set.high);
+  } else {
+    board_.release_pin(number_of(set.pin));
+  }
+}
+
+void Panel::do_action(const SetAnalog& set) {
+  board_.set_analog(set.channel, set.volts);
+}
+
+void Panel::do_action(const Serial& serial) {
+  const std::string line = serial.text + '\n';
+  const std::vector<std::uint8_t> bytes(line.begin(), line.end());
+  board_.serial_write(serial.uart.value_or(first_uart_), bytes);
+}
+
+void Panel::do_action(const Reset& /*reset*/) {
+  board_.reset();
+}
+
+void Panel::do_action(const Plug& plug) {
+  board_.set_chip_fault(plug.in ? sim::SpiWire::Fault::none : sim::SpiWire::Fault::stuck_high);
+}
+
+}  // namespace roio::sim_tool
