@@ -6,7 +6,10 @@
 #include <algorithm>
 #include <deque>
 #include <roio/sim/can_bus.hpp>
+#include <thread>
 #include <vector>
+
+#include "exit_status.hpp"
 
 namespace roio::sim_tool {
 namespace {
@@ -130,6 +133,27 @@ TEST_F(BridgeTest, KindsPassAndALongDlcIsEightBytes) {
     EXPECT_EQ(other_->taken[i].kind, sent[i].kind);
     EXPECT_EQ(other_->taken[i].id, sent[i].id);
     EXPECT_EQ(other_->taken[i].length, std::min<std::uint8_t>(sent[i].length, 8));
+  }
+}
+
+TEST(BridgeToABusThatIsStuck, GivesUp) {
+  sim::CanBus bus;
+  auto other = std::make_unique<OtherBus>();
+  other->room = 0;
+  Bridge bridge(bus, rate, std::move(other), 20ms);
+  sim::HostNode board(bus, rate);
+  bridge.give();
+  std::this_thread::sleep_for(30ms);
+  bridge.give();  // nothing waits: nothing is stuck
+  board.send(frame(1));
+  bus.run_for(2ms);
+  bridge.give();
+  std::this_thread::sleep_for(30ms);
+  try {
+    bridge.give();
+    ADD_FAILURE() << "it goes on";
+  } catch (const cli::Failure& failure) {
+    EXPECT_STREQ(failure.what(), "local:other: has taken no frame for too long");
   }
 }
 

@@ -130,17 +130,18 @@ Parsed<Action> parse_board_action(std::string_view verb, std::string_view& rest)
 }
 
 Parsed<Action> parse_own_action(std::string_view verb, std::string_view& rest) {
-  if (verb == "quit") {
-    return Action(Quit{});
-  }
+  // No temporary variants: gcc 12 takes parts of them for uninitialised.
+  Action action = Quit{};
   if (verb == "help") {
-    return Action(Help{});
+    action = Help{};
+  } else if (verb == "wait") {
+    const auto time = parse_seconds(take_word(rest));
+    if (!time) {
+      return time.error();
+    }
+    action = Wait{*time};
   }
-  const auto time = parse_seconds(take_word(rest));
-  if (!time) {
-    return time.error();
-  }
-  return Action(Wait{*time});
+  return action;
 }
 
 }  // namespace

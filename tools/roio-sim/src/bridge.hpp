@@ -22,7 +22,9 @@ class Bridge {
   using Clock = std::chrono::steady_clock;
 
   /// @param outside null: none; the node still acknowledges what boards send.
-  Bridge(sim::CanBus& bus, std::uint32_t bitrate_bps, std::unique_ptr<Bus> outside);
+  /// @param longest_block how long the other bus may take nothing of what waits for it.
+  Bridge(sim::CanBus& bus, std::uint32_t bitrate_bps, std::unique_ptr<Bus> outside,
+         Clock::duration longest_block = std::chrono::seconds(5));
   Bridge(const Bridge&) = delete;
   Bridge& operator=(const Bridge&) = delete;
   ~Bridge() = default;
@@ -49,9 +51,11 @@ class Bridge {
 
   sim::HostNode node_;
   std::unique_ptr<Bus> outside_;
+  Clock::duration longest_block_;
   std::vector<Received> batch_;
   std::vector<Frame> waiting_;  // for the other bus
-  Clock::time_point progress_ = Clock::now();
+  Clock::time_point tried_ = Clock::now();
+  Clock::duration stuck_{0};  // since the other bus last took something
   std::uint64_t taken_ = 0;
   std::uint64_t given_ = 0;
 };

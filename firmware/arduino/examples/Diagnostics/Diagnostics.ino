@@ -13,8 +13,9 @@
 
   Address 0.250, 500 kbit/s, a 16 MHz crystal on the module. Serial at 115200.
 
-  What it does: sends a message a second to itself, 0.250, which others acknowledge and ignore.
-  Needs a second node on the bus, with any sketch. Prints one of these, as it is now:
+  What it does: sends a message a second to itself, 0.250, which others acknowledge and ignore;
+  so there must be a second node on the bus, with any sketch. Prints each second one of these, with
+  what to look at:
     NO CHIP  WRONG CRYSTAL  BUS STUCK  BUS-OFF  NO ACKNOWLEDGEMENT  ERRORS  ALL IS WELL
   and, when the chip works, what was counted since the start.
 */
@@ -31,8 +32,6 @@ struct Options : RoioOptions {
 };
 
 RoioOn<10, -1, Options> roio;  // CS
-uint16_t sentBefore = 0;
-uint16_t busOffsBefore = 0;
 
 // --- starting ------------------------------------------------------------------------------------
 
@@ -46,7 +45,7 @@ void printStartTrouble(Roio::Status status, uint32_t measuredHz) {
       Serial.println(F(". Change the line with crystal."));
       break;
     case Roio::Status::wrong_mode:
-      Serial.println(F("BUS STUCK: it is never quiet. Does CANH or CANL touch 5V, GND or the other?"));
+      Serial.println(F("BUS STUCK: it is never quiet. Does CANH or CANL touch 5V or GND?"));
       break;
     default:
       Serial.println(F("NO CHIP: check CS, SCK, SI and SO (swapped?), 5V and GND."));
@@ -69,15 +68,16 @@ bool begin() {
 
 // --- once a second -------------------------------------------------------------------------------
 
-void printVerdict(bool wasBusOff, bool wasSent, bool hearsErrors) {
+// What has happened since the last report.
+void printVerdict(bool wasSent, bool wasBusOff, bool hadErrors, bool hearsNonsense) {
   if (wasBusOff) {
-    Serial.println(F("BUS-OFF: what it sends is not seen on the bus. Do CANH and CANL touch?"));
-  } else if (!wasSent && hearsErrors) {
-    Serial.println(F("BUS STUCK, OR OTHER RATE: it hears nonsense only. Do all nodes run at one rate?"));
+    Serial.println(F("BUS-OFF: what it sends is not what is on the bus. Do CANH and CANL touch?"));
+  } else if (!wasSent && hearsNonsense) {
+    Serial.println(F("BUS STUCK, OR OTHER RATE: it hears nonsense. Do all nodes run at one rate?"));
   } else if (!wasSent) {
-    Serial.println(F("NO ACKNOWLEDGEMENT: nobody hears it. Is another node on? CANH to CANH, CANL to CANL?"));
-  } else if (roio.state() != Roio::State::active) {
-    Serial.println(F("ERRORS: it works, but not at the first try. 120 ohms at both ends? A loose cable?"));
+    Serial.println(F("NO ACKNOWLEDGEMENT: is another node on? At the same rate? CANH to CANH?"));
+  } else if (hadErrors) {
+    Serial.println(F("ERRORS: but it works. 120 ohms at both ends? All at one rate? A loose cable?"));
   } else {
     Serial.println(F("ALL IS WELL."));
   }
@@ -88,28 +88,51 @@ void printNumber(const __FlashStringHelper* name, uint16_t number) {
   Serial.print(number);
 }
 
+void printState() {
+  switch (roio.state()) {
+    case Roio::State::active:
+      Serial.print(F("error-active"));
+      break;
+    case Roio::State::warning:
+      Serial.print(F("error-active, with a warning"));
+      break;
+    case Roio::State::passive:
+      Serial.print(F("error-passive"));
+      break;
+    case Roio::State::bus_off:
+      Serial.print(F("bus-off"));
+      break;
+  }
+}
+
+// The error counters fall by one with each message that goes well: it may take them a while.
 void printCounters(uint8_t transmitErrors, uint8_t receiveErrors) {
-  const auto& counters = roio.counters();
-  printNumber(F("  sent "), counters.sent);
-  printNumber(F(", received "), counters.received);
-  printNumber(F(", lost "), counters.overflows);
-  printNumber(F(", bus-offs "), counters.bus_offs);
-  printNumber(F("; error counters: transmit "), transmitErrors);
-  printNumber(F(", receive "), receiveErrors);
-  Serial.println();
+  printNumber(F("  sent "), roio.counters().sent);
+  printNumber(F(", received "), roio.counters().received);
+  printNumber(F(", lost "), roio.counters().overflows);
+  printNumber(F(", bus-offs "), roio.counters().bus_offs);
+  Serial.print(F("; "));
+  printState();
+  printNumber(F(", error counters "), transmitErrors);
+  printNumber(F(" transmit, "), receiveErrors);
+  Serial.println(F(" receive"));
 }
 
 void report() {
+  static uint16_t sent = 0;
+  static uint16_t busOffs = 0;
+  static uint16_t errors = 0;
   uint8_t transmitErrors = 0;
   uint8_t receiveErrors = 0;
   roio.errorCounters(transmitErrors, receiveErrors);
   const auto& counters = roio.counters();
-  const bool wasBusOff =
-      roio.state() == Roio::State::bus_off || counters.bus_offs != busOffsBefore;
-  printVerdict(wasBusOff, counters.sent != sentBefore, receiveErrors >= passiveLimit);
+  printVerdict(counters.sent != sent,
+               counters.bus_offs != busOffs || roio.state() == Roio::State::bus_off,
+               counters.message_errors != errors, receiveErrors >= passiveLimit);
   printCounters(transmitErrors, receiveErrors);
-  sentBefore = counters.sent;
-  busOffsBefore = counters.bus_offs;
+  sent = counters.sent;
+  busOffs = counters.bus_offs;
+  errors = counters.message_errors;
 }
 
 // Nobody has this address but itself: all acknowledge the message, and none takes it.

@@ -42,7 +42,7 @@ struct Values {
 RoioOn<10> roio;  // CS
 Values now = {};
 Values told = {};
-bool due = true;  // until the message is on its way: a change is not forgotten when the bus is full
+bool due;  // until the message is on its way: a change is not forgotten when the bus is full
 
 void countClicks() {
   static uint32_t lastDown[2];
@@ -57,7 +57,9 @@ void countClicks() {
   }
 }
 
-uint8_t read8Bits(uint8_t pin) { return analogRead(pin) / 4; }
+uint8_t read8Bits(uint8_t pin) {
+  return analogRead(pin) / 4;
+}
 
 void measure() {
   countClicks();
@@ -67,7 +69,9 @@ void measure() {
   }
 }
 
-bool differs(uint8_t a, uint8_t b, uint8_t step) { return a > b ? a - b > step : b - a > step; }
+bool differs(uint8_t a, uint8_t b, uint8_t step) {
+  return a > b ? a - b > step : b - a > step;
+}
 
 bool hasChanged() {
   bool changed = differs(now.light, told.light, lightStep);
@@ -104,7 +108,7 @@ void loop() {
     if (!begin()) {
       return;
     }
-    due = true;  // what the chip had not sent yet is gone
+    due = true;  // the first message; later, what the chip had not sent yet is gone
   }
   if (due && tell()) {
     told = now;

@@ -69,7 +69,11 @@ TimerServo* TimerServo::all_[TimerServo::turns];
 uint8_t TimerServo::count_ = 0;
 uint8_t TimerServo::turn_ = 0;
 
-ISR(TIMER1_COMPA_vect) { TimerServo::beginPulse(); }
-ISR(TIMER1_COMPB_vect) { TimerServo::endPulse(); }
+ISR(TIMER1_COMPA_vect) {
+  TimerServo::beginPulse();
+}
+ISR(TIMER1_COMPB_vect) {
+  TimerServo::endPulse();
+}
 
 #endif

@@ -10,7 +10,8 @@
     SO  (MISO)        12     ICSP 1      50
     CS                10     10          10
     INT               2      2           2
-  It only listens and acknowledges nothing: there must be two other nodes on the bus.
+  It only listens and acknowledges nothing: there must be two other nodes on the bus. A frame that
+  none of them acknowledges is sent, and printed, again and again.
 
   500 kbit/s, a 16 MHz crystal on the module. Serial at 115200.
 
@@ -60,6 +61,7 @@ void fetch() {
 void printAddress(Roio::Address address) {
   Serial.print(address.subnet);
   Serial.print('.');
+  fetch();
   if (address.node == 255) {
     Serial.print('*');
   } else {
@@ -68,11 +70,12 @@ void printAddress(Roio::Address address) {
   fetch();
 }
 
-void printHeader(const Roio::Header& header) {
+void printHeader(const roio_library::Header& header) {
   printAddress(header.source);
   Serial.print(F(" -> "));
   printAddress(header.destination);
   Serial.print(header.priority == Roio::Priority::urgent ? F(" urgent ") : F(" normal "));
+  fetch();
   switch (header.message_class) {
     case Roio::MessageClass::system:
       Serial.print(F("system"));
@@ -96,17 +99,18 @@ void printForeign(const Roio::Frame& frame, bool isLong) {
 }
 
 // Only extended data frames are Roio's, and of those, not the ones that no node can send.
-bool isRoio(const Roio::Frame& frame) {
-  const Roio::Header header = Roio::headerOf(frame);
+bool isRoio(const Roio::Frame& frame, const roio_library::Header& header) {
   return frame.kind == Roio::FrameKind::extended &&
          header.message_class != Roio::MessageClass::reserved && header.source.node != 255;
 }
 
 void printFrame(const Roio::Frame& frame) {
+  const roio_library::Header header = roio_library::unpack_id(frame.id);
+  fetch();
   const bool isRemote = frame.kind == Roio::FrameKind::standard_remote ||
                         frame.kind == Roio::FrameKind::extended_remote;
-  if (isRoio(frame)) {
-    printHeader(Roio::headerOf(frame));
+  if (isRoio(frame, header)) {
+    printHeader(header);
   } else {
     printForeign(frame, frame.kind == Roio::FrameKind::extended ||
                             frame.kind == Roio::FrameKind::extended_remote);
@@ -114,6 +118,7 @@ void printFrame(const Roio::Frame& frame) {
   Serial.print(F(" ["));
   Serial.print(frame.length);
   Serial.print(isRemote ? F("] remote request") : F("]"));
+  fetch();
   for (uint8_t i = 0; i < frame.length && !isRemote; ++i) {
     Serial.print(frame.data[i] < 0x10 ? F(" 0") : F(" "));
     Serial.print(frame.data[i], HEX);

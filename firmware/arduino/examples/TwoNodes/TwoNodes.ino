@@ -27,8 +27,11 @@ constexpr Roio::Address firstAddress = {0, 1};
 constexpr Roio::Address secondAddress = {0, 2};
 constexpr uint32_t periodMs = 1000;
 
-Roio first(10);  // CS
-Roio second(9);  // CS
+constexpr uint8_t firstSelect = 10;  // CS
+constexpr uint8_t secondSelect = 9;
+
+Roio first(firstSelect);
+Roio second(secondSelect);
 uint8_t number = 0;
 bool underWay = false;
 uint32_t sentAtUs = 0;
@@ -61,8 +64,7 @@ void sendNumber() {
     ++number;
   }
   sentAtUs = micros();
-  underWay =
-      first.send(Roio::Message(secondAddress, &number, sizeof number)) == Roio::Status::ok;
+  underWay = first.send(Roio::Message(secondAddress, &number, sizeof number)) == Roio::Status::ok;
   if (!underWay) {
     Serial.println(F("The first cannot send: check CANH, CANL and the jumpers"));
   }
@@ -84,8 +86,8 @@ void sendBack() {
 void receiveNumber() {
   Roio::Message message;
   // Another number than the last one sent comes late, and was reported already.
-  if (first.receive(message) == Roio::Status::ok && underWay &&
-      message.source() == secondAddress && message[0] == number) {
+  if (first.receive(message) == Roio::Status::ok && underWay && message.source() == secondAddress &&
+      message[0] == number) {
     underWay = false;
     Serial.print(number);
     Serial.print(F(" came back after "));
@@ -97,6 +99,9 @@ void receiveNumber() {
 
 void setup() {
   Serial.begin(115200);
+  // The second chip must not listen while the first one is begun.
+  digitalWrite(secondSelect, HIGH);
+  pinMode(secondSelect, OUTPUT);
 }
 
 void loop() {

@@ -332,7 +332,7 @@ class Mcp2515 {
   uint32_t time_clock_frames(uint32_t limit_us);
 
   // what READ STATUS shows
-  ROIO_MCP2515_OUT_OF_LINE bool is_plausible(uint8_t quick);
+  bool is_plausible(uint8_t quick);
   ROIO_MCP2515_OUT_OF_LINE void look(uint8_t tries);
 
   // receiving

@@ -450,17 +450,15 @@ ROIO_MCP2515_MEMBER(Status)::send(const Mcp2515Frame& frame, uint8_t token) {
       static_cast<uint8_t>(mcp2515::Mode::listen_only)) {
     return Status::wrong_mode;
   }
-  for (bool asked = false;; asked = true) {
-    if (give_to_chip(frame, token)) {
-      return Status::ok;
-    }
-    if (asked) {
-      return running_ ? enqueue(frame, token) : Status::no_chip;
-    }
+  if (pending_ != 0) {
     // Only the chip knows whether it has room by now.
     look(2);
     pump();
   }
+  if (give_to_chip(frame, token)) {
+    return Status::ok;
+  }
+  return running_ ? enqueue(frame, token) : Status::no_chip;
 }
 
 /// Whether no frame waits that has to go first, and the chip has room; then it is there.
