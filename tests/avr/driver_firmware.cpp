@@ -8,13 +8,17 @@
 struct Port {
   static constexpr bool has_interrupt_line = true;
   bool interrupt_line_is_low();
+  void pause(uint16_t microseconds);
   uint32_t microseconds();
 
   class Transaction {
    public:
     explicit Transaction(Port&) { select(true); }
-    ~Transaction() { select(false); }
+    ~Transaction() { end(); }
     uint8_t exchange(uint8_t out);
+    void send(const uint8_t* bytes, uint8_t count);
+    void receive(uint8_t* bytes, uint8_t count);
+    void end() { select(false); }
     void restart() {
       select(false);
       select(true);
@@ -47,9 +51,23 @@ bool Port::interrupt_line_is_low() {
 uint32_t Port::microseconds() {
   return *timer;
 }
+void Port::pause(uint16_t microseconds) {
+  for (const uint16_t start = *timer; static_cast<uint16_t>(*timer - start) < microseconds;) {
+  }
+}
 uint8_t Port::Transaction::exchange(uint8_t out) {
   *spi_data = out;
   return *spi_data;
+}
+void Port::Transaction::send(const uint8_t* bytes, uint8_t count) {
+  for (; count != 0; --count) {
+    exchange(*bytes++);
+  }
+}
+void Port::Transaction::receive(uint8_t* bytes, uint8_t count) {
+  for (; count != 0; --count) {
+    *bytes++ = exchange(0);
+  }
 }
 void Port::Transaction::select(bool selected) {
   *port_b = selected ? 0 : 4;

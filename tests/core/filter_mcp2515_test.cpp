@@ -268,7 +268,7 @@ TEST(FitMcp2515InOrder, APlainNodeIsThatOfTheDocumentWhicheverWayItIsMade) {
         ASSERT_EQ(all_registers(direct), all_registers(fitted)) << subnet << '.' << node;
       } else {
         // One bit from the broadcast address: a program has one rule for both.
-        for (std::uint32_t to = 0; to <= DestinationNodeField::max(); ++to) {
+        for (std::uint32_t to = 0; to <= DestinationNodeField::largest(); ++to) {
           const std::uint32_t id =
               DestinationSubnetField::put(own.subnet) | DestinationNodeField::put(to);
           ASSERT_EQ(accepts(direct, id), to == own.node || to == broadcast_node);

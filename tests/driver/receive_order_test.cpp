@@ -109,7 +109,8 @@ TEST(ReceiveOrder, AStatusReadForSendingKnowsTheOrderToo) {
 
 TEST(ReceiveOrder, IsNotGuessedAfterALookThatWentWrong) {
   // B is in RXB1 when A has been read, and the look that would have shown it comes back as
-  // nonsense. Another look could not tell whether A was freed, and which is older: the loss is told.
+  // nonsense. Another look could not tell whether A was freed, and which is older: the loss is
+  // told.
   Rig<> rig;
   rig.begin();
   rig.chip.receive(numbered('A'));

@@ -284,6 +284,35 @@ TEST(ChipLoss, AResetIsNoticedWithAnInterruptLine) {
   expect_reset_is_noticed<true>();
 }
 
+TEST(ChipLoss, ALineStuckHighIsNotTakenForAllBuffersInUse) {
+  Rig<> rig;
+  rig.begin();
+  rig.peer.controller().set_mode(sim::Controller::Mode::off);  // nobody acknowledges
+  ASSERT_EQ(rig.can.send(numbered(1)), Status::ok);
+  ASSERT_EQ(rig.can.send(numbered(2)), Status::ok);
+  ASSERT_EQ(rig.can.send(numbered(3, 4, urgent_to_own)), Status::ok);
+  rig.wire.set_fault(sim::SpiWire::Fault::stuck_high);
+  Frame frame{};
+  EXPECT_EQ(rig.can.receive(frame), Status::no_chip);
+  EXPECT_EQ(rig.can.counters().unknown, 3U);
+}
+
+struct Lean : Mcp2515Traits {
+  static constexpr bool diagnoses = false;
+};
+
+TEST(ChipLoss, IsNoticedByAProgramThatOnlySends) {
+  Rig<false, 0, 0, Lean> rig;
+  rig.begin();
+  rig.chip.reset_pin();
+  rig.bus.run_for(microseconds(500));
+  int calls = 1;
+  while (rig.can.poll() == Status::ok && calls < 1'000) {
+    ++calls;
+  }
+  EXPECT_EQ(calls, 64);
+}
+
 TEST(ChipLoss, ASilentLineIsNotBelievedForEver) {
   Rig<true> rig;
   rig.begin();

@@ -70,7 +70,7 @@ void printAddress(Roio::Address address) {
   fetch();
 }
 
-void printHeader(const roio_library::Header& header) {
+void printHeader(const Roio::Header& header) {
   printAddress(header.source);
   Serial.print(F(" -> "));
   printAddress(header.destination);
@@ -99,13 +99,13 @@ void printForeign(const Roio::Frame& frame, bool isLong) {
 }
 
 // Only extended data frames are Roio's, and of those, not the ones that no node can send.
-bool isRoio(const Roio::Frame& frame, const roio_library::Header& header) {
+bool isRoio(const Roio::Frame& frame, const Roio::Header& header) {
   return frame.kind == Roio::FrameKind::extended &&
          header.message_class != Roio::MessageClass::reserved && header.source.node != 255;
 }
 
 void printFrame(const Roio::Frame& frame) {
-  const roio_library::Header header = roio_library::unpack_id(frame.id);
+  const Roio::Header header = Roio::headerOf(frame);
   fetch();
   const bool isRemote = frame.kind == Roio::FrameKind::standard_remote ||
                         frame.kind == Roio::FrameKind::extended_remote;

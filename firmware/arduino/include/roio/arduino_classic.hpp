@@ -72,8 +72,8 @@ class ClassicNode : public ArduinoNode<ArduinoPort<SetPin, NoPin>, ArduinoOption
     return ArduinoNode::receive(message);
   }
 
-  /// Sends one byte, or `length` of them (0..8). While the chip has no room it waits, 20 ms at most:
-  /// sketches of that time did not ask. A message that is given up is counted in `unsent`.
+  /// Sends one byte, or `length` of them (0..8). While the chip has no room it waits, 20 ms at
+  /// most: sketches of that time did not ask. A message that is given up is counted in `unsent`.
   /// @return as send(); full: given up.
   Status write(uint8_t data, uint8_t address, uint8_t subnet) {
     return write(&data, 1, address, subnet);
@@ -98,10 +98,12 @@ class ClassicNode : public ArduinoNode<ArduinoPort<SetPin, NoPin>, ArduinoOption
     return write(data, length, broadcast_node, subnet);
   }
 
-  /// The chip's answer to READ STATUS (datasheet, figure 12-8).
-  uint8_t status() { return driver_.read_status(); }
+  /// The chip's answer to READ STATUS (datasheet, figure 12-8), without the three TXnIF: this
+  /// driver keeps them set for itself. 0: nothing received, nothing to be sent.
+  uint8_t status() { return driver_.read_status() & 0x57U; }
 
-  /// @param mode as in CANCTRL: 0x00 normal, 0x40 loopback, 0x60 listening only; others, sleep among
+  /// @param mode as in CANCTRL: 0x00 normal, 0x40 loopback, 0x60 listening only; others, sleep
+  /// among
   ///        them, are refused.
   /// @return as changeMode(Mode).
   Status changeMode(uint8_t mode) {

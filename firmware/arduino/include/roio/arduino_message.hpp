@@ -42,8 +42,8 @@ class ArduinoMessage {
 
   void setDestination(Address destination) { mcp2515::put_destination(destination, frame_); }
   void setPriority(Priority priority) {
-    frame_.bytes[0] = static_cast<uint8_t>((frame_.bytes[0] & 0x7FU) |
-                                           (static_cast<uint8_t>(priority) << 7));
+    frame_.bytes[0] =
+        static_cast<uint8_t>((frame_.bytes[0] & 0x7FU) | (static_cast<uint8_t>(priority) << 7));
   }
   void setLength(uint8_t length) { frame_.bytes[4] = length; }
 

@@ -47,6 +47,7 @@ class ArduinoNode {
   using BitTiming = roio::BitTiming;
   using Counters = typename Driver::Counters;
   using Frame = roio::Frame;
+  using Header = roio::Header;
   using FrameKind = roio::FrameKind;
   using Filters = Mcp2515FilterPair;
   using Interest = roio::Interest;
@@ -71,7 +72,8 @@ class ArduinoNode {
 
   /// Starts the chip, or starts it again. Takes 1 ms when all is well, 60 ms at most, or twice that
   /// on a bus that is never idle.
-  /// @return ok; bad_argument: no valid address (subnet 0..31, node 0..254), or a mode that is none;
+  /// @return ok; bad_argument: no valid address (subnet 0..31, node 0..254), or a mode that is
+  /// none;
   ///         bad_timing; no_chip; wrong_mode. As Mcp2515::begin().
   ROIO_IN_LINE Status begin(const BitTiming& timing, Address own, Mode mode = Mode::normal) {
     return begin_plain(mcp2515::Cnf::word(timing), own, mode);
@@ -117,7 +119,7 @@ class ArduinoNode {
   ROIO_NODISCARD Status receive(Message& message) { return driver_.receive(message.frame()); }
 
   /// Sends a message. Never waits.
-  /// @param message its source becomes this node.
+  /// @param message its source becomes this node, also when it was not sent.
   /// @return ok: it will be sent; full: try again after the next poll() or receive();
   ///         bad_argument: subnet above 31, length above 8; no_chip; wrong_mode: listening only.
   ROIO_NODISCARD Status send(Message& message) {
@@ -133,6 +135,9 @@ class ArduinoNode {
   ROIO_NODISCARD Status receive(Frame& frame) { return driver_.receive(frame); }
   /// @param frame sent as it is: what it has for a source, too.
   ROIO_NODISCARD Status send(const Frame& frame) { return driver_.send(frame); }
+
+  /// What the identifier of an extended frame says.
+  static Header headerOf(const Frame& frame) { return unpack_id(frame.id); }
 
   /// Everybody in a subnet, as a destination.
   static constexpr Address everybody(uint8_t subnet) { return broadcast_of(subnet); }

@@ -34,7 +34,6 @@ class SetPin {
   explicit constexpr SetPin(uint8_t number) : number_(number) {}
   uint8_t number() const { return number_; }
 
-
   void begin_output_high() {
     digitalWrite(number_, HIGH);
     pinMode(number_, OUTPUT);
@@ -72,8 +71,12 @@ class InterruptsOff {
 
  private:
 #if defined(__AVR__)
-  static uint32_t state() { return SREG; }
-  static void restore(uint32_t state) { SREG = static_cast<uint8_t>(state); }
+  static uint32_t state() {
+    return SREG;
+  }
+  static void restore(uint32_t state) {
+    SREG = static_cast<uint8_t>(state);
+  }
 #elif defined(__ARM_ARCH) && defined(__ARM_ARCH_PROFILE) && __ARM_ARCH_PROFILE == 'M'
   static uint32_t state() {
     uint32_t primask;
@@ -87,8 +90,12 @@ class InterruptsOff {
   }
 #else
   // Arduino has no word for "as before".
-  static uint32_t state() { return 0; }
-  static void restore(uint32_t) { interrupts(); }
+  static uint32_t state() {
+    return 0;
+  }
+  static void restore(uint32_t) {
+    interrupts();
+  }
 #endif
 
   uint32_t before_;

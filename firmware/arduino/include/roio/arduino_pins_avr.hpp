@@ -137,32 +137,39 @@ inline void begin_spi() {
 #endif
 }
 
-// The next byte is under way while the last one is put away, or the one after it is fetched: at 8
-// MHz a byte takes 16 cycles, and these two 19 and 21. SPI.transfer() of a buffer takes 60 bytes of
-// flash and overwrites what it sends.
+// What can be done while a byte is under way is done then: at 8 MHz one takes 16 cycles, and these
+// take some 21 each. SPI.transfer() of a buffer takes 60 bytes of flash and overwrites what it
+// sends.
+
+ROIO_IN_LINE void wait_for_spi() {
+  while ((SPSR & (1U << SPIF)) == 0) {
+  }
+}
 
 /// @param count 1 or more.
 ROIO_IN_LINE void send_block(const uint8_t* bytes, uint8_t count) {
-  do {
-    SPDR = *bytes++;
-    while ((SPSR & (1U << SPIF)) == 0) {
+  uint8_t next = *bytes;
+  for (;;) {
+    SPDR = next;
+    if (--count == 0) {
+      break;
     }
-  } while (--count != 0);
+    next = *++bytes;
+    wait_for_spi();
+  }
+  wait_for_spi();
 }
 
 ROIO_IN_LINE void receive_block(uint8_t* bytes, uint8_t count) {
   SPDR = 0;
-  for (;;) {
-    while ((SPSR & (1U << SPIF)) == 0) {
-    }
+  while (--count != 0) {
+    wait_for_spi();
     const uint8_t answer = SPDR;
-    if (--count == 0) {
-      *bytes = answer;
-      return;
-    }
     SPDR = answer;
     *bytes++ = answer;
   }
+  wait_for_spi();
+  *bytes = SPDR;
 }
 
 }  // namespace roio

@@ -16,13 +16,13 @@
 /// **When to call.** The chip holds two received frames. Call poll() (with RxQueue 0: receive()) at
 /// least once in the time that two frames take on the bus, less the time to read one (134 us at 1
 /// Mbit/s, 268 us at 500 kbit/s, without data), or frames are lost: the chip says so, and it is
-/// counted. With an interrupt line a call
-/// costs no SPI while nothing has happened. Not from an interrupt and the main program both.
+/// counted. With an interrupt line a call costs no SPI while nothing has happened. Not from an
+/// interrupt and the main program both.
 ///
 /// **Cost.** For a frame with 8 bytes, in SPI bytes and transactions: received in a run or with an
-/// /// frames follow one another so closely that the chip must be told their order. A frame with n
-/// bytes fewer costs n fewer. A call that finds nothing costs 2 in 1, or none with an interrupt
-/// line. No call waits for the bus.
+/// interrupt line 16 in 2, the first one found by polling 18 in 3; sent 15 in 2, and 17 in 3 while
+/// the chip may still have others. A frame with n bytes fewer costs n fewer. A call that finds
+/// nothing costs 2 in 1, or none with an interrupt line. No call waits for the bus.
 ///
 /// No heap, no exceptions, no global state, no floating point. What a template argument switches
 /// off takes no flash. The Port is the only way to hardware: see PortExample below. Source: MCP2515
@@ -42,8 +42,8 @@
 #include <roio/mcp2515_registers.hpp>
 #include <roio/status.hpp>
 
-/// On an AVR a call is smaller than what it calls, from the second on; the optimiser of a linker that
-/// sees all callers thinks otherwise.
+/// On an AVR a call is smaller than what it calls, from the second on; the optimiser of a linker
+/// that sees all callers thinks otherwise.
 #if defined(__AVR__)
 #define ROIO_MCP2515_OUT_OF_LINE __attribute__((noinline))
 #else
@@ -92,15 +92,15 @@ class Mcp2515Config {
 
   /// The same from its parts, which a compiler sees through.
   /// @param cnf Cnf::word(). @param control Control::of().
-  __attribute__((always_inline)) Mcp2515Config(uint32_t cnf, uint32_t mask, uint32_t first, uint32_t second,
-                                   uint8_t control)
-      : bytes_{mcp2515_register(first, 0),  mcp2515_register(first, 1),
-               mcp2515_register(first, 2),  mcp2515_register(first, 3),
-               mcp2515_register(second, 0), mcp2515_register(second, 1),
-               mcp2515_register(second, 2), mcp2515_register(second, 3),
-               mcp2515_register(mask, 0),   mcp2515_register(mask, 1),
-               mcp2515_register(mask, 2),   mcp2515_register(mask, 3),
-               static_cast<uint8_t>(cnf),   static_cast<uint8_t>(cnf >> 8),
+  __attribute__((always_inline))
+  Mcp2515Config(uint32_t cnf, uint32_t mask, uint32_t first, uint32_t second, uint8_t control)
+      : bytes_{mcp2515_register(first, 0),      mcp2515_register(first, 1),
+               mcp2515_register(first, 2),      mcp2515_register(first, 3),
+               mcp2515_register(second, 0),     mcp2515_register(second, 1),
+               mcp2515_register(second, 2),     mcp2515_register(second, 3),
+               mcp2515_register(mask, 0),       mcp2515_register(mask, 1),
+               mcp2515_register(mask, 2),       mcp2515_register(mask, 3),
+               static_cast<uint8_t>(cnf),       static_cast<uint8_t>(cnf >> 8),
                static_cast<uint8_t>(cnf >> 16), 0},
         control_(control) {}
 
@@ -178,7 +178,8 @@ struct Mcp2515Traits {
 /// @tparam RxQueue frames that poll() fetches ahead of receive(), 0..127, 13 bytes each. 0: each
 ///         receive() reads one from the chip.
 /// @tparam TxQueue frames that wait beside those in the chip (two normal ones and an urgent one),
-///         0..127, 13 bytes each (14 with reports_outcomes). 0: send() says full when the chip has no room.
+///         0..127, 13 bytes each (14 with reports_outcomes). 0: send() says full when the chip has
+///         no room.
 template <typename Port, uint8_t RxQueue = 2, uint8_t TxQueue = 2, typename Traits = Mcp2515Traits>
 class Mcp2515 {
  public:
@@ -367,8 +368,8 @@ class Mcp2515 {
   uint8_t control_;      // what CANCTRL must be
   uint8_t calls_;        // since the chip was last checked, and more when that should be soon
   bool running_;
-  uint8_t rx1_is_older_;  // not 0: // of two full receive buffers
-  uint8_t pending_;    // what the chip was asked to send, bit for bit TXREQ in READ STATUS
+  uint8_t rx1_is_older_;  // of two full receive buffers, when not 0
+  uint8_t pending_;       // what the chip was asked to send, bit for bit TXREQ in READ STATUS
   Requests requests_;
   mcp2515::Ring<Mcp2515Frame, RxQueue> rx_queue_;
   mcp2515::Ring<Waiting, TxQueue> tx_queue_;

@@ -24,9 +24,10 @@ namespace roio {
 
 struct Mcp2515Frame {
   static constexpr uint8_t head_length = 5;
-  static constexpr uint8_t extended_bit = 0x08;         ///< Of byte 1.
-  static constexpr uint8_t standard_remote_bit = 0x10;  ///< Of byte 1, received standard frames only.
-  static constexpr uint8_t remote_bit = 0x40;           ///< Of byte 4: to send, and extended ones.
+  static constexpr uint8_t extended_bit = 0x08;  ///< Of byte 1.
+  static constexpr uint8_t standard_remote_bit =
+      0x10;                                    ///< Of byte 1, received standard frames only.
+  static constexpr uint8_t remote_bit = 0x40;  ///< Of byte 4: to send, and extended ones.
   static constexpr uint8_t length_mask = 0x0F;
 
   uint8_t bytes[head_length + max_data_length];
@@ -58,8 +59,8 @@ inline Mcp2515Frame to_chip(const Frame& frame) {
   if (extended) {
     out.bytes[1] = static_cast<uint8_t>(out.bytes[1] | Mcp2515Frame::extended_bit);
   }
-  out.bytes[4] = static_cast<uint8_t>(frame.length |
-                                     (is_remote(frame.kind) ? Mcp2515Frame::remote_bit : 0U));
+  out.bytes[4] =
+      static_cast<uint8_t>(frame.length | (is_remote(frame.kind) ? Mcp2515Frame::remote_bit : 0U));
   for (uint8_t i = 0; i < max_data_length; ++i) {
     out.data()[i] = frame.data[i];
   }
@@ -87,11 +88,12 @@ inline Frame from_chip(const Mcp2515Frame& frame) {
 //   byte 1: destination node 7..5 | - | node 4 3     byte 3: source node
 inline Header header_of(const Mcp2515Frame& frame) {
   const uint8_t* head = frame.bytes;
-  return Header{static_cast<Priority>(head[0] >> 7), static_cast<MessageClass>(static_cast<uint8_t>(head[0] >> 5) & 3U),
-                Address{static_cast<uint8_t>(head[0] & max_subnet),
-                        static_cast<uint8_t>((head[1] & 0xE0U) | ((head[1] & 3U) << 3) |
-                                             (head[2] >> 5))},
-                Address{static_cast<uint8_t>(head[2] & max_subnet), head[3]}};
+  return Header{
+      static_cast<Priority>(head[0] >> 7),
+      static_cast<MessageClass>(static_cast<uint8_t>(head[0] >> 5) & 3U),
+      Address{static_cast<uint8_t>(head[0] & max_subnet),
+              static_cast<uint8_t>((head[1] & 0xE0U) | ((head[1] & 3U) << 3) | (head[2] >> 5))},
+      Address{static_cast<uint8_t>(head[2] & max_subnet), head[3]}};
 }
 
 /// Whether an extended frame is a message of the user's, from an address that a node can have.
@@ -106,8 +108,8 @@ inline void put_destination(Address destination, Mcp2515Frame& frame) {
   uint8_t middle = destination.node;
   middle >>= 3;  // by itself, or an AVR shifts 16 bits one by one
   frame.bytes[0] = static_cast<uint8_t>((frame.bytes[0] & 0x80U) | subnet);
-  frame.bytes[1] = static_cast<uint8_t>((destination.node & 0xE0U) | Mcp2515Frame::extended_bit |
-                                        (middle & 3U));
+  frame.bytes[1] =
+      static_cast<uint8_t>((destination.node & 0xE0U) | Mcp2515Frame::extended_bit | (middle & 3U));
   uint8_t low = destination.node;
   low <<= 5;
   frame.bytes[2] = static_cast<uint8_t>((frame.bytes[2] & max_subnet) | low);

@@ -130,8 +130,8 @@ ROIO_MCP2515_MEMBER(bool)::configure(const Mcp2515Config& config) {
       static_cast<uint8_t>((read_register(Register::rxb0ctrl) & RxControl::settings) ^ rx0);
   for (uint8_t buffer = urgent_buffer; Traits::reports_outcomes && buffer != 0; buffer >>= 1) {
     write_register(mcp2515::txbctrl(buffer), mcp2515::request_level);
-    wrong = static_cast<uint8_t>(wrong | (read_register(mcp2515::txbctrl(buffer)) ^
-                                          mcp2515::request_level));
+    wrong = static_cast<uint8_t>(
+        wrong | (read_register(mcp2515::txbctrl(buffer)) ^ mcp2515::request_level));
   }
   wrong = static_cast<uint8_t>(wrong | exchange_setup(config));
   if (Port::has_interrupt_line) {
@@ -289,8 +289,8 @@ ROIO_MCP2515_MEMBER(uint32_t)::time_clock_frames(uint32_t limit_us) {
 // --- what READ STATUS shows ----------------------------------------------------------------------
 
 /// The three TXnIF are set, and the chip sends nothing but what it was told to. A chip that was
-/// reset, and lines stuck at 0 or 1, look different; but for one that is at 1 when all buffers are in
-/// use: there is no mode 7, which CANSTAT would have then.
+/// reset, and lines stuck at 0 or 1, look different; but for one that is at 1 when all buffers are
+/// in use: there is no mode 7, which CANSTAT would have then.
 ROIO_MCP2515_MEMBER(bool)::is_plausible(uint8_t quick) {
   using mcp2515::Control;
   if (quick == QuickStatus::everything &&
@@ -429,6 +429,11 @@ ROIO_MCP2515_MEMBER(Status)::poll() {
     }
     looked = true;
   }
+  if (RxQueue == 0 && !Traits::diagnoses && calls_ + 1U >= mcp2515::calls_between_checks) {
+    // Nobody else looks where nobody receives.
+    look(2);
+    looked = true;
+  }
   tend(looked);
   return running_ ? Status::ok : Status::no_chip;
 }
@@ -463,8 +468,8 @@ ROIO_MCP2515_MEMBER(Status)::send(const Mcp2515Frame& frame, uint8_t token) {
 
 /// Whether no frame waits that has to go first, and the chip has room; then it is there.
 ROIO_MCP2515_MEMBER(bool)::give_to_chip(const Mcp2515Frame& frame, uint8_t token) {
-  const bool goes_next = tx_queue_.empty() || (is_urgent(frame) &&
-                                               !is_urgent(tx_queue_.front().frame));
+  const bool goes_next =
+      tx_queue_.empty() || (is_urgent(frame) && !is_urgent(tx_queue_.front().frame));
   return goes_next && load(frame, token);
 }
 
@@ -516,8 +521,7 @@ ROIO_MCP2515_MEMBER(uint8_t)::choose_buffer(bool urgent) const {
 
 ROIO_MCP2515_MEMBER(bool)::load(const Mcp2515Frame& frame, uint8_t token) {
   const bool accepts = running_ && !requests_.aborting();
-  const uint8_t buffer =
-      accepts ? choose_buffer(is_urgent(frame)) : mcp2515::no_buffer;
+  const uint8_t buffer = accepts ? choose_buffer(is_urgent(frame)) : mcp2515::no_buffer;
   if (buffer == mcp2515::no_buffer) {
     return false;
   }
@@ -614,11 +618,11 @@ void Mcp2515<Port, RxQueue, TxQueue, Traits>::abort() {
 ROIO_MCP2515_MEMBER(void)::tend(bool looked) {
   ++calls_;
   // When there is time, and at the latest when there has been none for long.
-  const bool check = calls_ >= mcp2515::calls_between_checks &&
-                     (quick_ == 0 || calls_ >= mcp2515::calls_at_most);
+  const bool check =
+      calls_ >= mcp2515::calls_between_checks && (quick_ == 0 || calls_ >= mcp2515::calls_at_most);
   // A line may keep silent for ever. Without one, every call that finds nothing has looked.
   const bool must_look = (Port::has_interrupt_line && check) || !tx_queue_.empty() ||
-                    requests_.aborting() || (Traits::reports_outcomes && pending_ != 0);
+                         requests_.aborting() || (Traits::reports_outcomes && pending_ != 0);
   if (must_look && !looked && running_) {
     look(2);
   }

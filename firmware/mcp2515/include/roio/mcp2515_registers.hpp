@@ -38,7 +38,8 @@ enum class Register : uint8_t {
 
 /// READ RX BUFFER from SIDH on, of RXB0 or else RXB1.
 constexpr uint8_t read_rx(bool first) {
-  return static_cast<uint8_t>(static_cast<uint8_t>(Instruction::read_rx_buffer) | (first ? 0U : 4U));
+  return static_cast<uint8_t>(static_cast<uint8_t>(Instruction::read_rx_buffer) |
+                              (first ? 0U : 4U));
 }
 // A transmit buffer is named by its bit in RTS: 1, 2, 4 for buffers 0, 1, 2.
 
@@ -143,8 +144,8 @@ struct Cnf {
   }
   /// @param cnf CNF3, CNF2, CNF1.
   static uint16_t clocks_per_bit(const uint8_t* cnf) {
-    const uint8_t quanta = static_cast<uint8_t>(1U + (cnf[1] & 7U) + 1U + ((cnf[1] >> 3) & 7U) + 1U +
-                                                (cnf[0] & 7U) + 1U);
+    const uint8_t quanta = static_cast<uint8_t>(1U + (cnf[1] & 7U) + 1U + ((cnf[1] >> 3) & 7U) +
+                                                1U + (cnf[0] & 7U) + 1U);
     return static_cast<uint16_t>(2U * quanta * ((cnf[2] & 0x3FU) + 1U));
   }
   /// All three: 00 CNF1 CNF2 CNF3; 0 for a timing that is not valid, and never else.

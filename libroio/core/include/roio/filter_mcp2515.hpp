@@ -62,10 +62,10 @@ inline void to_mcp2515_registers(uint32_t id, uint8_t registers[4]) {
 
 /// The same for one register: 0..3 for SIDH, SIDL, EID8, EID0; bit 31 becomes EXIDE. For constants.
 constexpr uint8_t mcp2515_register(uint32_t tagged_id, uint8_t index) {
-  return index == 0   ? static_cast<uint8_t>(tagged_id >> 21)
-         : index == 1 ? static_cast<uint8_t>(((tagged_id >> 13) & 0xE0U) |
-                                             ((tagged_id >> 16) & 0x03U) |
-                                             ((tagged_id >> 28) & Mcp2515Filters::exide))
+  return index == 0 ? static_cast<uint8_t>(tagged_id >> 21)
+         : index == 1
+             ? static_cast<uint8_t>(((tagged_id >> 13) & 0xE0U) | ((tagged_id >> 16) & 0x03U) |
+                                    ((tagged_id >> 28) & Mcp2515Filters::exide))
          : index == 2 ? static_cast<uint8_t>(tagged_id >> 8)
                       : static_cast<uint8_t>(tagged_id);
 }
