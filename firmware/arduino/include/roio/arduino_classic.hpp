@@ -98,9 +98,8 @@ class ClassicNode : public ArduinoNode<ArduinoPort<SetPin, NoPin>, ArduinoOption
     return write(data, length, broadcast_node, subnet);
   }
 
-  /// The chip's answer to READ STATUS (datasheet, figure 12-8), without the three TXnIF: this
-  /// driver keeps them set for itself. 0: nothing received, nothing to be sent.
-  uint8_t status() { return driver_.read_status() & 0x57U; }
+  /// CANSTAT: the mode in bits 7 to 5; 0 in normal mode.
+  uint8_t status() { return driver_.read_status(); }
 
   /// @param mode as in CANCTRL: 0x00 normal, 0x40 loopback, 0x60 listening only; others, sleep
   /// among

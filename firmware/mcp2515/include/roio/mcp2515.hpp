@@ -286,8 +286,8 @@ class Mcp2515 {
   Mcp2515State state() const { return state_of(error_flags_); }
   /// As it is now: one register is read.
   Mcp2515State read_state() { return state_of(read_register(Register::eflg)); }
-  /// READ STATUS, as it is now.
-  uint8_t read_status() { return read_quick_status(); }
+  /// CANSTAT, as it is now.
+  uint8_t read_status() { return read_register(Register::canstat); }
   const Counters& counters() const { return counters_; }
   Port& port() { return port_; }
   Traits& traits() { return traits_; }

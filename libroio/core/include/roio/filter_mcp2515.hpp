@@ -43,7 +43,7 @@ struct Mcp2515FilterPair {
   uint32_t filter[2];
   bool exact;  ///< As in Mcp2515Filters.
 
-  /// All six registers: the second filter is in RXF1, RXF3 and RXF5.
+  /// The image: the second filter in RXF1, the first in all others.
   operator Mcp2515Filters() const;
 };
 
@@ -397,7 +397,7 @@ inline Mcp2515FilterPair::operator Mcp2515Filters() const {
   for (uint8_t byte = 0; byte < 4; ++byte) {
     image.mask[0][byte] = image.mask[1][byte] = mcp2515_register(mask, byte);
     for (uint8_t f = 0; f < Mcp2515Filters::filter_count; ++f) {
-      image.filter[f][byte] = mcp2515_register(filter[f & 1U], byte);
+      image.filter[f][byte] = mcp2515_register(filter[f == 1 ? 1 : 0], byte);
     }
   }
   image.exact = exact;

@@ -43,13 +43,16 @@ constexpr bool operator!=(const Header& a, const Header& b) {
 /// One field of the identifier: where it lies, and how a value gets in and out.
 template <uint8_t Lsb, uint8_t Width>
 struct IdField {
-  static_assert(Width > 0 && Lsb + Width <= 29, "a field lies in bits 28..0");
+  static_assert(Width > 0 && Width <= 8 && Lsb + Width <= 29, "a field lies in bits 28..0");
   static constexpr uint8_t lsb = Lsb;
   static constexpr uint8_t width = Width;
   static constexpr uint32_t largest() { return (UINT32_C(1) << Width) - 1U; }
   static constexpr uint32_t mask() { return largest() << Lsb; }
   static constexpr uint32_t put(uint32_t value) { return (value & largest()) << Lsb; }
-  static constexpr uint32_t get(uint32_t id) { return (id >> Lsb) & largest(); }
+  /// Whole bytes first, and the rest in 16 bits: an AVR shifts a long word one bit at a time.
+  static constexpr uint32_t get(uint32_t id) {
+    return (static_cast<uint16_t>(id >> (Lsb & 0x18U)) >> (Lsb & 7U)) & largest();
+  }
 };
 
 using PriorityField = IdField<28, 1>;
