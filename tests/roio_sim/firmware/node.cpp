@@ -1,11 +1,9 @@
 // A node of 500 kbit/s by raw SPI: 0.2, or 0.3 when D4 is low at the start. It prints every message
 // to it but those of a flood, and every frame that is no message:
 //   'p'                 answers with 'P'
-//   'f' n n last        counts; when `last` is not 0, answers with 'F', how many, how many out of turn
-//   'v' us us           a servo on D9 from now on
-//   'o' level           D7 (Leonardo: D13)
-//   'a'                 answers with 'A' and what A0 measures
-//   'h'                 halts for ever
+//   'f' n n last        counts; when `last` is not 0, answers with 'F', how many, how many out of
+//   turn 'v' us us           a servo on D9 from now on 'o' level           D7 (Leonardo: D13) 'a'
+//   answers with 'A' and what A0 measures 'h'                 halts for ever
 // Answers go to the sender. D4 pressed: 'c' and how often, to 0.10. On the serial port it repeats a
 // line, but for "ping", which sends 'p' to the other node.
 #include "board.hpp"
@@ -31,8 +29,12 @@ static uint16_t flood;
 static uint16_t out_of_turn;
 static uint16_t expected;
 
-ISR(TIMER1_COMPA_vect) { SERVO_PORT |= _BV(SERVO_BIT); }
-ISR(TIMER1_COMPB_vect) { SERVO_PORT &= ~_BV(SERVO_BIT); }
+ISR(TIMER1_COMPA_vect) {
+  SERVO_PORT |= _BV(SERVO_BIT);
+}
+ISR(TIMER1_COMPB_vect) {
+  SERVO_PORT &= ~_BV(SERVO_BIT);
+}
 
 // --- serial ------------------------------------------------------------------------
 
