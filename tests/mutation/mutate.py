@@ -91,7 +91,7 @@ MUTATIONS = {
     "the_second_frame_goes_behind_the_first": (
         "send a second frame from the buffer behind the first",
         "== 0 ? first_buffer : second_buffer;",
-        "== 0 ? second_buffer : first_buffer;",
+        "== 0 ? first_buffer : urgent_buffer;",
         TRANSMIT, ["TransmitOrder.ManyInARow"]),
     "a_buffer_for_urgent_frames": (
         "keep buffer 2 for urgent frames",
