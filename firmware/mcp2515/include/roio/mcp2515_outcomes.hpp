@@ -21,8 +21,8 @@ struct Waiting {
 template <>
 struct Waiting<false> {
   Mcp2515Frame frame;
-  void keep(uint8_t) {}
-  uint8_t kept() const { return 0; }
+  static void keep(uint8_t) {}
+  static uint8_t kept() { return 0; }
 };
 
 /// The frames that the chip has: one token for each transmit buffer, by the buffer's bit in RTS.
@@ -43,10 +43,10 @@ class Requests {
 template <>
 class Requests<false> {
  public:
-  bool aborting() const { return false; }
-  void set_aborting(bool) {}
-  void keep(uint8_t, uint8_t) {}
-  uint8_t token_of(uint8_t) const { return 0; }
+  static bool aborting() { return false; }
+  static void set_aborting(bool) {}
+  static void keep(uint8_t, uint8_t) {}
+  static uint8_t token_of(uint8_t) { return 0; }
 };
 
 }  // namespace mcp2515
