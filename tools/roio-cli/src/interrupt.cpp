@@ -2,7 +2,6 @@
 
 #include <fcntl.h>
 #include <poll.h>
-#include <signal.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -11,6 +10,8 @@
 #include <cerrno>
 #include <limits>
 #include <system_error>
+
+#include "process.hpp"
 
 namespace roio::cli {
 namespace {
@@ -36,14 +37,6 @@ extern "C" void on_signal(int number) {
   errno = saved_errno;
 }
 
-void handle(int number, void (*handler)(int), int flags) {
-  struct sigaction action {};
-  action.sa_handler = handler;
-  action.sa_flags = flags;
-  sigemptyset(&action.sa_mask);
-  sigaction(number, &action, nullptr);
-}
-
 enum class Woken { signal, readable, timeout };
 Woken wait_for(int fd, int timeout_ms) {
   std::array<pollfd, 2> fds{{{wake_pipe[0], POLLIN, 0}, {fd, POLLIN, 0}}};
@@ -61,14 +54,11 @@ Interrupt::Interrupt() {
     throw std::system_error(errno, std::generic_category(), "pipe");
   }
   caught = 0;
-  handle(SIGINT, on_signal, static_cast<int>(SA_RESETHAND));
-  handle(SIGTERM, on_signal, static_cast<int>(SA_RESETHAND));
-  handle(SIGPIPE, SIG_IGN, 0);
+  catch_interrupts(on_signal);
 }
 
 Interrupt::~Interrupt() {
-  handle(SIGINT, SIG_DFL, 0);
-  handle(SIGTERM, SIG_DFL, 0);
+  release_interrupts();
   for (int& fd : wake_pipe) {
     ::close(fd);
     fd = -1;

@@ -44,7 +44,11 @@ bool wants_colour() noexcept {
 }
 
 void note(std::string_view text) noexcept {
-  const std::string line = "roio-cli: " + std::string(text) + '\n';
+  tell("roio-cli", text);
+}
+
+void tell(std::string_view tool, std::string_view text) noexcept {
+  const std::string line = std::string(tool) + ": " + std::string(text) + '\n';
   // Nobody is left to tell when standard error fails.
   [[maybe_unused]] const ssize_t written = ::write(STDERR_FILENO, line.data(), line.size());
 }

@@ -24,6 +24,8 @@ bool wants_colour() noexcept;
 
 /// One line "roio-cli: TEXT" on standard error.
 void note(std::string_view text) noexcept;
+/// The same for any tool.
+void tell(std::string_view tool, std::string_view text) noexcept;
 
 }  // namespace roio::cli
 

@@ -1,8 +1,8 @@
 #include "interrupt.hpp"
 
-#include <signal.h>
-
 #include <atomic>
+
+#include "process.hpp"
 
 namespace roio::sim_tool {
 namespace {
@@ -15,20 +15,10 @@ extern "C" void on_signal(int number) {
   caught = number;
 }
 
-void handle(int number, void (*handler)(int), int flags) {
-  struct sigaction action {};
-  action.sa_handler = handler;
-  action.sa_flags = flags;
-  sigemptyset(&action.sa_mask);
-  sigaction(number, &action, nullptr);
-}
-
 }  // namespace
 
 void catch_signals() {
-  handle(SIGINT, on_signal, static_cast<int>(SA_RESETHAND));
-  handle(SIGTERM, on_signal, static_cast<int>(SA_RESETHAND));
-  handle(SIGPIPE, SIG_IGN, 0);
+  cli::catch_interrupts(on_signal);
 }
 
 int caught_signal() noexcept {

@@ -129,9 +129,7 @@ std::unique_ptr<Report> json_report() {
 }
 
 void note(std::string_view text) noexcept {
-  const std::string line = "roio-sim: " + std::string(text) + '\n';
-  // Nobody is left to tell when standard error fails.
-  [[maybe_unused]] const ssize_t written = ::write(STDERR_FILENO, line.data(), line.size());
+  cli::tell("roio-sim", text);
 }
 
 }  // namespace roio::sim_tool
