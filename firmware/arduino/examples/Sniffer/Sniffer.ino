@@ -105,7 +105,6 @@ bool isRoio(const Roio::Frame& frame, const Roio::Header& header) {
 }
 
 void printFrame(const Roio::Frame& frame) {
-  fetch();
   const Roio::Header header = Roio::headerOf(frame);
   fetch();
   const bool isRemote = frame.kind == Roio::FrameKind::standard_remote ||
@@ -143,9 +142,11 @@ bool mustTellLosses() {
 
 void printLosses() {
   Serial.print(F("! "));
-  Serial.print(notPrinted);
+  fetch();
+  Serial.print(notPrinted);  // 40 us a digit
   fetch();
   Serial.print(F(" frames not printed, "));
+  fetch();
   Serial.print(roio.counters().overflows);
   fetch();
   Serial.println(F(" times some lost by the chip"));
