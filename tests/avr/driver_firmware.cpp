@@ -14,11 +14,10 @@ struct Port {
   class Transaction {
    public:
     explicit Transaction(Port&) { select(true); }
-    ~Transaction() { end(); }
+    ~Transaction() { select(false); }
     uint8_t exchange(uint8_t out);
     void send(const uint8_t* bytes, uint8_t count);
     void receive(uint8_t* bytes, uint8_t count);
-    void end() { select(false); }
     void restart() {
       select(false);
       select(true);

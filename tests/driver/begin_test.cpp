@@ -269,6 +269,52 @@ TEST(Begin, InListenOnlyModeDisturbsNobody) {
   EXPECT_TRUE(rig.receive_all().empty());
 }
 
+TEST(ChangeMode, ListensAndTakesPartAgain) {
+  Rig<> rig;
+  rig.begin();
+  ASSERT_EQ(rig.can.change_mode(mcp2515::Mode::listen_only), Status::ok);
+  EXPECT_EQ(rig.chip.mode(), sim::Mcp2515Chip::OperationMode::listen_only);
+  EXPECT_EQ(rig.can.send(numbered(1)), Status::wrong_mode);
+  ASSERT_EQ(rig.can.change_mode(mcp2515::Mode::normal), Status::ok);
+  expect_it_works(rig);
+  for (int i = 0; i < 100; ++i) {
+    ASSERT_EQ(rig.can.poll(), Status::ok) << "the mode is the one that is expected";
+  }
+}
+
+TEST(ChangeMode, OnABusThatIsNeverIdleSaysSoAndStops) {
+  Rig<> rig;
+  rig.begin();
+  rig.bus.hold_dominant(true);
+  rig.bus.run_for(milliseconds(1));
+  EXPECT_EQ(rig.can.change_mode(mcp2515::Mode::listen_only), Status::wrong_mode);
+  EXPECT_FALSE(rig.can.running());
+  EXPECT_EQ(rig.can.counters().chip_losses, 0U) << "the chip is there";
+  rig.bus.hold_dominant(false);
+  EXPECT_EQ(rig.can.begin(plain_config()), Status::ok);
+  expect_it_works(rig);
+}
+
+TEST(ChangeMode, RefusesConfigurationModeAndAChipThatIsNotRunning) {
+  Rig<> rig;
+  EXPECT_EQ(rig.can.change_mode(mcp2515::Mode::normal), Status::no_chip);
+  rig.begin();
+  EXPECT_EQ(rig.can.change_mode(mcp2515::Mode::configuration), Status::bad_argument);
+  expect_it_works(rig);
+}
+
+TEST(Stop, TakesTheChipOffTheBusAndTellsWhatItHad) {
+  Rig<> rig;
+  rig.begin();
+  rig.peer_sends({numbered(1), numbered(2)});
+  EXPECT_EQ(rig.can.stop(), Status::ok);
+  EXPECT_EQ(rig.chip.mode(), sim::Mcp2515Chip::OperationMode::configuration);
+  EXPECT_FALSE(rig.can.running());
+  EXPECT_EQ(rig.can.counters().discarded, 2U);
+  ASSERT_EQ(rig.can.begin(plain_config()), Status::ok);
+  expect_it_works(rig);
+}
+
 TEST(Begin, AtTheWrongRateShowsInTheCounters) {
   Rig<> rig;
   ASSERT_EQ(rig.can.begin(plain_config<125'000>()), Status::ok) << "nothing on the bus says so yet";

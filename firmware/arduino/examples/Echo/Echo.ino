@@ -34,11 +34,11 @@ void loop() {
   if (!roio.running() && !begin()) {
     return;
   }
-  if (!waiting && roio.receive(message) == Roio::Status::ok) {
+  if (!waiting) {
+    if (roio.receive(message) != Roio::Status::ok) {
+      return;
+    }
     message.setDestination(message.source());
-    waiting = true;
   }
-  if (waiting) {
-    waiting = roio.send(message) != Roio::Status::ok;
-  }
+  waiting = roio.send(message) != Roio::Status::ok;
 }

@@ -26,12 +26,10 @@ class ArduinoMessage {
     }
   }
 
-  Address source() const {
-    return Address{static_cast<uint8_t>(frame_.bytes[2] & max_subnet), frame_.bytes[3]};
-  }
+  Address source() const { return mcp2515::header_of(frame_).source; }
   Address destination() const { return mcp2515::header_of(frame_).destination; }
   bool isBroadcast() const { return is_broadcast(destination()); }
-  Priority priority() const { return static_cast<Priority>(frame_.bytes[0] >> 7); }
+  Priority priority() const { return mcp2515::header_of(frame_).priority; }
   bool isUrgent() const { return priority() == Priority::urgent; }
   /// 0..8.
   uint8_t length() const { return frame_.length(); }

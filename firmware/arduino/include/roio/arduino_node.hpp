@@ -59,7 +59,7 @@ class ArduinoNode {
   using Status = roio::Status;
 
   template <typename... Pin>
-  explicit constexpr ArduinoNode(Pin... pin) : driver_(pin...), own_{0, 0} {}
+  explicit constexpr ArduinoNode(Pin... pin) : own_{0, 0}, driver_(pin...) {}
 
   // --- beginning ---------------------------------------------------------------------------------
 
@@ -72,8 +72,7 @@ class ArduinoNode {
 
   /// Starts the chip, or starts it again. Takes 1 ms when all is well, 60 ms at most, or twice that
   /// on a bus that is never idle.
-  /// @return ok; bad_argument: no valid address (subnet 0..31, node 0..254), or a mode that is
-  /// none;
+  /// @return ok; bad_argument: no valid address (subnet 0..31, node 0..254), or configuration mode;
   ///         bad_timing; no_chip; wrong_mode. As Mcp2515::begin().
   ROIO_IN_LINE Status begin(const BitTiming& timing, Address own, Mode mode = Mode::normal) {
     return begin_plain(mcp2515::Cnf::word(timing), own, mode);
@@ -84,20 +83,21 @@ class ArduinoNode {
     if (!is_valid_source(own)) {
       return Status::bad_argument;
     }
-    own_ = own;
-    driver_.port().begin();
+    take_address(own);
     return driver_.begin(Mcp2515Config(timing, filters, mode));
   }
   static Filters everything() { return mcp2515_filters_of_everything(); }
-  /// The filters for an Interest, up to 8 rules. When `exact` is false the chip lets through more
-  /// than was asked for.
-  static Filters filtersOf(const Interest& interest) {
+  /// The filters for an Interest. When `exact` is false the chip lets through more than was asked
+  /// for.
+  /// @param filters written on ok only.
+  /// @return ok; bad_argument: its own address is none; full: more than 8 rules.
+  ROIO_NODISCARD static Status filtersOf(const Interest& interest, Filters& filters) {
     FilterProgram<8> program;
-    Filters filters = mcp2515_filters_of(interest.own);
-    if (compile(interest, program) == Status::ok) {
+    const Status status = compile(interest, program);
+    if (status == Status::ok) {
       filters = fit_mcp2515_in_order(program);
     }
-    return filters;
+    return status;
   }
 
   /// As in the library of 2014, and with its bit timing.
@@ -167,7 +167,7 @@ class ArduinoNode {
   /// Another mode: Mcp2515::change_mode().
   ROIO_NODISCARD Status changeMode(Mode mode) { return driver_.change_mode(mode); }
 
- protected:
+ private:
   // Chosen among numbers, which a compiler sees through.
   static ROIO_IN_LINE uint32_t original_cnf(uint16_t kbps) {
     constexpr uint32_t at_1000 = mcp2515::Cnf::word(original_bit_timing(1000));
@@ -189,20 +189,23 @@ class ArduinoNode {
     if (cnf == 0) {
       return Status::bad_timing;
     }
-    own_ = own;
-    driver_.port().begin();
+    take_address(own);
     constexpr uint32_t mask = mcp2515_filters_of(Address{0, 0}).mask;
     const Mcp2515Config config(cnf, mask, mcp2515_filters_of(own).filter[0],
                                mcp2515_filters_of(own).filter[1],
                                mcp2515::Control::of(mode, false));
     return driver_.start(config);
   }
+  /// And the pins.
+  ROIO_IN_LINE void take_address(Address own) {
+    own_ = own;
+    driver_.port().begin();
+  }
+
+  Address own_;
 
  protected:
   Driver driver_;
-
- private:
-  Address own_;
 };
 
 }  // namespace roio

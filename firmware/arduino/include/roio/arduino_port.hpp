@@ -67,22 +67,14 @@ class ArduinoPort {
 
   class Transaction {
    public:
-    ROIO_IN_LINE explicit Transaction(ArduinoPort& port) : port_(port), ended_(false) {
-      port_.select();
-    }
-    ROIO_IN_LINE ~Transaction() { end(); }
+    ROIO_IN_LINE explicit Transaction(ArduinoPort& port) : port_(port) { port_.select(); }
+    ROIO_IN_LINE ~Transaction() { port_.deselect(); }
     Transaction(const Transaction&) = delete;
     Transaction& operator=(const Transaction&) = delete;
 
     ROIO_IN_LINE uint8_t exchange(uint8_t out) { return transfer(out); }
     ROIO_IN_LINE void send(const uint8_t* bytes, uint8_t count) { put(bytes, count); }
     ROIO_IN_LINE void receive(uint8_t* bytes, uint8_t count) { get(bytes, count); }
-    ROIO_IN_LINE void end() {
-      if (!ended_) {
-        port_.deselect();
-        ended_ = true;
-      }
-    }
     ROIO_IN_LINE void restart() {
       port_.chip_select_.set_high();
       port_.chip_select_.set_low();
@@ -90,7 +82,6 @@ class ArduinoPort {
 
    private:
     ArduinoPort& port_;
-    bool ended_;
   };
 
   class Uninterrupted : InterruptsOff {

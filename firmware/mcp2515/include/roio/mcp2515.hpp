@@ -67,7 +67,6 @@ namespace roio {
 //       void send(const uint8_t* bytes, uint8_t count);  // 1 or more
 //       void receive(uint8_t* bytes, uint8_t count);     // 1 or more
 //       void restart();         // chip select high, then low again
-//       void end();             // chip select high already; nothing but the destructor after it
 //       ~Transaction();
 //     };
 //     class Uninterrupted {     // while one lives, nothing else runs: interrupts are off
@@ -170,8 +169,7 @@ struct Mcp2515Traits {
   /// begin() is called again is not counted as discarded.
   static constexpr bool diagnoses = true;
   /// Called from send(), poll(), receive(), abort(), begin() and check_clock(), with the token that
-  /// send() was given. Must not call the driver, and be short: interrupts may be off. Only with
-  /// reports_outcomes.
+  /// send() was given. Must not call the driver. Only with reports_outcomes.
   void on_outcome(uint8_t, TxOutcome) {}
 };
 
@@ -307,7 +305,8 @@ class Mcp2515 {
   static constexpr uint8_t second_buffer = 1;
 
   static bool is_urgent(const Mcp2515Frame& frame) {
-    return (frame.bytes[0] & 0x80U) == 0 && (!Traits::all_kinds || frame.is_extended());
+    return (frame.bytes[0] & mcp2515::priority_bit) == 0 &&
+           (!Traits::all_kinds || frame.is_extended());
   }
   bool is_sendable(const Frame& frame) const {
     return is_valid(frame) && frame.kind != FrameKind::error &&
@@ -327,14 +326,15 @@ class Mcp2515 {
   // starting
   bool reach(uint8_t control);
   bool configure(const Mcp2515Config& config);
-  bool prepare(const Mcp2515Config& config);
-  void count_what_begin_forgets();
+  bool reset_chip();
+  void count_what_is_forgotten();
   void load_clock_frames();
   uint32_t time_clock_frames(uint32_t limit_us);
 
   // what READ STATUS shows
   bool is_plausible(uint8_t quick);
-  ROIO_MCP2515_OUT_OF_LINE void look(uint8_t tries);
+  void look();
+  ROIO_MCP2515_OUT_OF_LINE void note(uint8_t quick, uint8_t tries);
 
   // receiving
   bool find_received(bool& looked);

@@ -96,18 +96,21 @@ inline Header header_of(const Mcp2515Frame& frame) {
       Address{static_cast<uint8_t>(head[2] & max_subnet), head[3]}};
 }
 
+constexpr uint8_t class_bits = 0x60;    ///< Of byte 0; MessageClass::message is 0.
+constexpr uint8_t priority_bit = 0x80;  ///< Of byte 0.
+
 /// Whether an extended frame is a message of the user's, from an address that a node can have.
 inline bool is_message(const Mcp2515Frame& frame) {
-  return (frame.bytes[0] & 0x60U) == 0 && frame.bytes[3] != broadcast_node;
+  return (frame.bytes[0] & class_bits) == 0 && frame.bytes[3] != broadcast_node;
 }
 
 /// An extended frame of class message. A subnet that is none becomes a class that is not a message:
 /// can_be_sent() refuses it.
 inline void put_destination(Address destination, Mcp2515Frame& frame) {
-  const uint8_t subnet = destination.subnet <= max_subnet ? destination.subnet : uint8_t{0x60};
+  const uint8_t subnet = destination.subnet <= max_subnet ? destination.subnet : class_bits;
   uint8_t middle = destination.node;
   middle >>= 3;  // by itself, or an AVR shifts 16 bits one by one
-  frame.bytes[0] = static_cast<uint8_t>((frame.bytes[0] & 0x80U) | subnet);
+  frame.bytes[0] = static_cast<uint8_t>((frame.bytes[0] & priority_bit) | subnet);
   frame.bytes[1] =
       static_cast<uint8_t>((destination.node & 0xE0U) | Mcp2515Frame::extended_bit | (middle & 3U));
   uint8_t low = destination.node;
@@ -119,7 +122,7 @@ inline void put_source(Address source, Mcp2515Frame& frame) {
   frame.bytes[3] = source.node;
 }
 inline bool can_be_sent(const Mcp2515Frame& frame) {
-  return (frame.bytes[0] & 0x60U) == 0 && frame.bytes[4] <= max_data_length;
+  return (frame.bytes[0] & class_bits) == 0 && frame.bytes[4] <= max_data_length;
 }
 
 }  // namespace mcp2515

@@ -16,7 +16,7 @@ constexpr uint8_t no_buffer = 0;
 constexpr uint16_t pause_us = 200;  ///< 128 clocks (8.1) of any oscillator above 640 kHz.
 constexpr uint8_t pauses = 250;     ///< 50 ms: one frame at 5 kbit/s, and 11 bits.
 constexpr uint8_t calls_between_checks = 64;
-constexpr uint8_t calls_at_most = 192;
+constexpr uint8_t calls_at_most = 192;  ///< Where there is always a frame to be read.
 /// Any TXP will do, if it is the same for all; but not the 0 of a line that says nothing.
 constexpr uint8_t request_level = 2;
 
@@ -126,30 +126,27 @@ ROIO_MCP2515_MEMBER(bool)::configure(const Mcp2515Config& config) {
   using mcp2515::RxControl;
   constexpr uint8_t rx0 = RxControl::by_filters | RxControl::rollover;
   write_register(Register::rxb0ctrl, rx0);
-  uint8_t wrong =
-      static_cast<uint8_t>((read_register(Register::rxb0ctrl) & RxControl::settings) ^ rx0);
+  bool right = (read_register(Register::rxb0ctrl) & RxControl::settings) == rx0;
   for (uint8_t buffer = urgent_buffer; Traits::reports_outcomes && buffer != 0; buffer >>= 1) {
     write_register(mcp2515::txbctrl(buffer), mcp2515::request_level);
-    wrong = static_cast<uint8_t>(
-        wrong | (read_register(mcp2515::txbctrl(buffer)) ^ mcp2515::request_level));
+    right = right && read_register(mcp2515::txbctrl(buffer)) == mcp2515::request_level;
   }
-  wrong = static_cast<uint8_t>(wrong | exchange_setup(config));
+  right = right && exchange_setup(config) == 0;
   if (Port::has_interrupt_line) {
     constexpr uint8_t received = Interrupt::rx0 | Interrupt::rx1;
     write_register(Register::caninte, received);
-    wrong = static_cast<uint8_t>(wrong | (read_register(Register::caninte) ^ received));
+    right = right && read_register(Register::caninte) == received;
   }
   // The three TXnIF are set and never cleared, so that every READ STATUS shows whether the chip
   // still knows what it was told.
   write_register(Register::canintf, Interrupt::tx_any);
-  return (wrong | (read_quick_status() ^ QuickStatus::txif)) == 0;
+  return right && read_quick_status() == QuickStatus::txif;
 }
 
-/// What begin() and check_clock() have in common.
-/// @return whether the chip is there, and set up.
-ROIO_MCP2515_MEMBER(bool)::prepare(const Mcp2515Config& config) {
+/// @return whether the chip is there, and in configuration mode.
+ROIO_MCP2515_MEMBER(bool)::reset_chip() {
   forget_chip();
-  return reach(mcp2515::Control::after_reset) && configure(config);
+  return reach(mcp2515::Control::after_reset);
 }
 
 ROIO_MCP2515_MEMBER(Status)::begin(const Mcp2515Config& config) {
@@ -166,10 +163,8 @@ ROIO_MCP2515_MEMBER(Status)::begin(const Mcp2515Config& config) {
 }
 
 ROIO_MCP2515_MEMBER(Status)::start(const Mcp2515Config& config) {
-  if (Traits::diagnoses && running_) {
-    count_what_begin_forgets();
-  }
-  if (!prepare(config)) {
+  count_what_is_forgotten();
+  if (!reset_chip() || !configure(config)) {
     return Status::no_chip;
   }
   control_ = config.control();
@@ -190,27 +185,29 @@ ROIO_MCP2515_MEMBER(Status)::change_mode(mcp2515::Mode mode) {
   if (!running_) {
     return Status::no_chip;
   }
-  control_ = static_cast<uint8_t>((control_ & ~Control::mode_mask) | static_cast<uint8_t>(mode));
-  if (!reach(control_)) {
+  const uint8_t control =
+      static_cast<uint8_t>((control_ & ~Control::mode_mask) | static_cast<uint8_t>(mode));
+  if (!reach(control)) {
     stop();
     return Status::wrong_mode;
   }
+  control_ = control;
   return Status::ok;
 }
 
 ROIO_MCP2515_MEMBER(Status)::stop() {
-  if (Traits::diagnoses && running_) {
-    count_what_begin_forgets();
-  }
-  forget_chip();
-  return reach(mcp2515::Control::after_reset) ? Status::ok : Status::no_chip;
+  count_what_is_forgotten();
+  return reset_chip() ? Status::ok : Status::no_chip;
 }
 
 /// Losses that the chip knows of, and frames that nobody has read.
-ROIO_MCP2515_MEMBER(void)::count_what_begin_forgets() {
+ROIO_MCP2515_MEMBER(void)::count_what_is_forgotten() {
+  if (!Traits::diagnoses || !running_) {
+    return;
+  }
   check_chip();
   if (running_) {
-    look(2);
+    look();
     counters_.discarded += (quick_ & QuickStatus::rx0) != 0 ? 1 : 0;
     counters_.discarded += (quick_ & QuickStatus::rx1) != 0 ? 1 : 0;
   }
@@ -226,14 +223,14 @@ ROIO_MCP2515_MEMBER(Status)::check_clock(const Mcp2515Config& config, uint32_t o
   if (!config.timing_is_valid()) {
     return Status::bad_timing;
   }
-  if (!prepare(config)) {
+  if (!reset_chip() || !configure(config)) {
     return Status::no_chip;
   }
   if (!reach(static_cast<uint8_t>(mcp2515::Mode::loopback) | Control::clock_out)) {
     return Status::wrong_mode;
   }
-  const uint32_t clocks = UINT32_C(2) * mcp2515::clock_frames * mcp2515::clock_frame_bits *
-                          config.clocks_per_bit() / 2U;
+  const uint32_t clocks =
+      UINT32_C(1) * mcp2515::clock_frames * mcp2515::clock_frame_bits * config.clocks_per_bit();
   const uint32_t expected_us = clocks / (osc_hz / 1000U) * 1000U;
   load_clock_frames();
   const uint32_t limit_us = mcp2515::clock_timeout_us + mcp2515::slowest_clock_factor * expected_us;
@@ -300,18 +297,23 @@ ROIO_MCP2515_MEMBER(bool)::is_plausible(uint8_t quick) {
   return (quick & static_cast<uint8_t>(~(QuickStatus::any_rx | pending_))) == QuickStatus::txif;
 }
 
-/// Reads READ STATUS and takes in what it shows; nonsense tells of a lost chip.
-/// @param tries 2 where nonsense may as well come from a spike on the wires.
-ROIO_MCP2515_MEMBER(void)::look(uint8_t tries) {
-  do {
-    const uint8_t quick = read_quick_status();
-    if (is_plausible(quick)) {
-      quick_ = quick & QuickStatus::any_rx;
-      settle(quick);
+/// Reads READ STATUS and takes in what it shows.
+ROIO_MCP2515_MEMBER(void)::look() {
+  note(read_quick_status(), 2);
+}
+
+/// Takes in what READ STATUS showed; nonsense tells of a lost chip.
+/// @param tries 2 where nonsense may as well come from a spike on the wires: then once more.
+ROIO_MCP2515_MEMBER(void)::note(uint8_t quick, uint8_t tries) {
+  while (!is_plausible(quick)) {
+    if (--tries == 0) {
+      lose_chip();
       return;
     }
-  } while (--tries != 0);
-  lose_chip();
+    quick = read_quick_status();
+  }
+  quick_ = quick & QuickStatus::any_rx;
+  settle(quick);
 }
 
 // --- receiving -----------------------------------------------------------------------------------
@@ -321,7 +323,7 @@ ROIO_MCP2515_MEMBER(void)::look(uint8_t tries) {
 /// @param looked whether READ STATUS has been read in this call.
 ROIO_MCP2515_MEMBER(bool)::find_received(bool& looked) {
   if (quick_ == 0 && !looked && (!Port::has_interrupt_line || port_.interrupt_line_is_low())) {
-    look(2);
+    look();
     looked = true;
   }
   return quick_ != 0;
@@ -353,6 +355,8 @@ ROIO_MCP2515_MEMBER(bool)::fetch(Mcp2515Frame& frame) {
 /// @return false: the chip was lost meanwhile, or the line says so; the frame cannot be trusted.
 ROIO_MCP2515_MEMBER(bool)::read_rx_buffer(bool first, Mcp2515Frame& frame) {
   bool trusted = true;
+  bool looks = true;
+  uint8_t quick = 0;
   {
     Transaction transaction(port_);
     transaction.exchange(mcp2515::read_rx(first));
@@ -364,16 +368,22 @@ ROIO_MCP2515_MEMBER(bool)::read_rx_buffer(bool first, Mcp2515Frame& frame) {
     }
     trusted = !Port::has_interrupt_line || port_.interrupt_line_is_low();
     typename Port::Uninterrupted together(port_);
-    transaction.end();
-    if (!Port::has_interrupt_line || !trusted || port_.interrupt_line_is_low()) {
-      // Once only: the order follows from this very look, and that the buffer was freed.
-      look(1);
-    } else {
-      quick_ = 0;
+    transaction.restart();
+    looks = !Port::has_interrupt_line || !trusted || port_.interrupt_line_is_low();
+    if (looks) {
+      transaction.exchange(static_cast<uint8_t>(Instruction::read_status));
+      quick = transaction.exchange(0);
     }
   }
-  rx1_is_older_ = first ? quick_ & QuickStatus::rx1 : 0;
+  if (looks) {
+    // Once only: the order follows from this very look, and that the buffer was freed.
+    note(quick, 1);
+  } else {
+    quick_ = 0;
+  }
+  rx1_is_older_ = 0;
   if (quick_ != 0) {
+    rx1_is_older_ = first ? quick_ & QuickStatus::rx1 : 0;
     // Perhaps both were full for a while, and a third frame was lost: to be looked at soon.
     calls_ |= mcp2515::calls_between_checks;
   }
@@ -413,7 +423,8 @@ ROIO_MCP2515_MEMBER(Status)::receive(Mcp2515Frame& frame) {
       received = fetch(frame);
       looked = true;
     }
-    tend(looked);
+    // Without a line it has looked by now, in one way or the other.
+    tend(looked || !Port::has_interrupt_line);
   }
   return received ? Status::ok : running_ ? Status::empty : Status::no_chip;
 }
@@ -427,11 +438,6 @@ ROIO_MCP2515_MEMBER(Status)::poll() {
     if (fetch(rx_queue_.next())) {
       rx_queue_.commit();
     }
-    looked = true;
-  }
-  if (RxQueue == 0 && !Traits::diagnoses && calls_ + 1U >= mcp2515::calls_between_checks) {
-    // Nobody else looks where nobody receives.
-    look(2);
     looked = true;
   }
   tend(looked);
@@ -448,6 +454,11 @@ ROIO_MCP2515_MEMBER(Status)::send(const Frame& frame, uint8_t token) {
 }
 
 ROIO_MCP2515_MEMBER(Status)::send(const Mcp2515Frame& frame, uint8_t token) {
+  if (pending_ != 0) {
+    // Only the chip knows whether it has room by now.
+    look();
+    pump();
+  }
   if (!running_) {
     return Status::no_chip;
   }
@@ -455,15 +466,7 @@ ROIO_MCP2515_MEMBER(Status)::send(const Mcp2515Frame& frame, uint8_t token) {
       static_cast<uint8_t>(mcp2515::Mode::listen_only)) {
     return Status::wrong_mode;
   }
-  if (pending_ != 0) {
-    // Only the chip knows whether it has room by now.
-    look(2);
-    pump();
-  }
-  if (give_to_chip(frame, token)) {
-    return Status::ok;
-  }
-  return running_ ? enqueue(frame, token) : Status::no_chip;
+  return give_to_chip(frame, token) ? Status::ok : enqueue(frame, token);
 }
 
 /// Whether no frame waits that has to go first, and the chip has room; then it is there.
@@ -495,7 +498,8 @@ ROIO_MCP2515_MEMBER(Status)::enqueue(const Mcp2515Frame& frame, uint8_t token) {
 }
 
 ROIO_MCP2515_MEMBER(void)::pump() {
-  while (!tx_queue_.empty() && load(tx_queue_.front().frame, tx_queue_.front().kept())) {
+  while (running_ && !tx_queue_.empty() &&
+         load(tx_queue_.front().frame, tx_queue_.front().kept())) {
     tx_queue_.pop();
   }
 }
@@ -520,7 +524,7 @@ ROIO_MCP2515_MEMBER(uint8_t)::choose_buffer(bool urgent) const {
 }
 
 ROIO_MCP2515_MEMBER(bool)::load(const Mcp2515Frame& frame, uint8_t token) {
-  const bool accepts = running_ && !requests_.aborting();
+  const bool accepts = !requests_.aborting();
   const uint8_t buffer = accepts ? choose_buffer(is_urgent(frame)) : mcp2515::no_buffer;
   if (buffer == mcp2515::no_buffer) {
     return false;
@@ -620,18 +624,16 @@ ROIO_MCP2515_MEMBER(void)::tend(bool looked) {
   // When there is time, and at the latest when there has been none for long.
   const bool check =
       calls_ >= mcp2515::calls_between_checks && (quick_ == 0 || calls_ >= mcp2515::calls_at_most);
-  // A line may keep silent for ever. Without one, every call that finds nothing has looked.
-  const bool must_look = (Port::has_interrupt_line && check) || !tx_queue_.empty() ||
-                         requests_.aborting() || (Traits::reports_outcomes && pending_ != 0);
+  // A line may keep silent for ever, and poll() alone does not receive.
+  const bool must_look = check || !tx_queue_.empty() || requests_.aborting() ||
+                         (Traits::reports_outcomes && pending_ != 0);
   if (must_look && !looked && running_) {
-    look(2);
+    look();
   }
   pump();
-  if (check) {
+  if (check && running_) {
     calls_ = 0;
-    if (running_) {
-      check_chip();
-    }
+    check_chip();
   }
 }
 

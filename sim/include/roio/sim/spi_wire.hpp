@@ -110,13 +110,7 @@ class ChipPort {
     explicit Transaction(ChipPort& port) : wire_(*port.wire_) { wire_.select(); }
     Transaction(const Transaction&) = delete;
     Transaction& operator=(const Transaction&) = delete;
-    ~Transaction() { end(); }
-    void end() {
-      if (!ended_) {
-        wire_.deselect();
-        ended_ = true;
-      }
-    }
+    ~Transaction() { wire_.deselect(); }
     std::uint8_t exchange(std::uint8_t out) { return wire_.exchange(out); }
     void send(const std::uint8_t* bytes, std::uint8_t count) {
       for (; count > 0; --count) {
@@ -135,7 +129,6 @@ class ChipPort {
 
    private:
     SpiWire& wire_;
-    bool ended_ = false;
   };
 
   class Uninterrupted {

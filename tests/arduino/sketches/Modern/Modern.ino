@@ -28,7 +28,9 @@ void beginEachWay() {
   show(roio.begin(timing, own));
   show(roio.begin(timing, own, Roio::Mode::listen_only));
   show(roio.begin(timing, own, Roio::everything()));
-  show(roio.begin(timing, own, Roio::filtersOf(interest), Roio::Mode::loopback));
+  Roio::Filters filters;
+  show(Roio::filtersOf(interest, filters));
+  show(roio.begin(timing, own, filters, Roio::Mode::loopback));
   show(roio.changeMode(Roio::Mode::normal));
   show(plain.begin(timing, own));
 }
