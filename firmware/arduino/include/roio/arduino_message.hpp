@@ -26,10 +26,10 @@ class ArduinoMessage {
     }
   }
 
-  Address source() const { return mcp2515::header_of(frame_).source; }
-  Address destination() const { return mcp2515::header_of(frame_).destination; }
+  Address source() const { return mcp2515::source_of(frame_); }
+  Address destination() const { return mcp2515::destination_of(frame_); }
   bool isBroadcast() const { return is_broadcast(destination()); }
-  Priority priority() const { return mcp2515::header_of(frame_).priority; }
+  Priority priority() const { return mcp2515::priority_of(frame_); }
   bool isUrgent() const { return priority() == Priority::urgent; }
   /// 0..8.
   uint8_t length() const { return frame_.length(); }

@@ -86,14 +86,16 @@ inline Frame from_chip(const Mcp2515Frame& frame) {
 
 //   byte 0: priority | class | destination subnet    byte 2: node 2..0 | source subnet
 //   byte 1: destination node 7..5 | - | node 4 3     byte 3: source node
-inline Header header_of(const Mcp2515Frame& frame) {
+inline Priority priority_of(const Mcp2515Frame& frame) {
+  return static_cast<Priority>(frame.bytes[0] >> 7);
+}
+inline Address destination_of(const Mcp2515Frame& frame) {
   const uint8_t* head = frame.bytes;
-  return Header{
-      static_cast<Priority>(head[0] >> 7),
-      static_cast<MessageClass>(static_cast<uint8_t>(head[0] >> 5) & 3U),
-      Address{static_cast<uint8_t>(head[0] & max_subnet),
-              static_cast<uint8_t>((head[1] & 0xE0U) | ((head[1] & 3U) << 3) | (head[2] >> 5))},
-      Address{static_cast<uint8_t>(head[2] & max_subnet), head[3]}};
+  return Address{static_cast<uint8_t>(head[0] & max_subnet),
+                 static_cast<uint8_t>((head[1] & 0xE0U) | ((head[1] & 3U) << 3) | (head[2] >> 5))};
+}
+inline Address source_of(const Mcp2515Frame& frame) {
+  return Address{static_cast<uint8_t>(frame.bytes[2] & max_subnet), frame.bytes[3]};
 }
 
 constexpr uint8_t class_bits = 0x60;    ///< Of byte 0; MessageClass::message is 0.
