@@ -115,8 +115,7 @@ inline void put_destination(Address destination, Mcp2515Frame& frame) {
   frame.bytes[0] = static_cast<uint8_t>((frame.bytes[0] & priority_bit) | subnet);
   frame.bytes[1] =
       static_cast<uint8_t>((destination.node & 0xE0U) | Mcp2515Frame::extended_bit | (middle & 3U));
-  uint8_t low = destination.node;
-  low <<= 5;
+  const uint8_t low = static_cast<uint8_t>(destination.node << 5);
   frame.bytes[2] = static_cast<uint8_t>((frame.bytes[2] & max_subnet) | low);
 }
 inline void put_source(Address source, Mcp2515Frame& frame) {
