@@ -17,7 +17,7 @@ void Mcp2515Chip::request_transmission(int buffer) {
   if ((registers_[map::canctrl] & map::abat) != 0) {
     return give_up(buffer, map::abtf);
   }
-  if (mode_ == OperationMode::loopback) {
+  if (is_looping_back()) {
     // Not before all the buffers that one instruction names are pending.
     later(SimTime(0), [this] { start_loopback(); });
   } else {
@@ -133,8 +133,13 @@ void Mcp2515Chip::on_transmit_error(BusError /*error*/) {
 
 // --- loopback mode: a bus of its own, that takes as long (10.4) ----------------------------------
 
+// Not any more on the way to another mode: from then on the controller takes what is pending.
+bool Mcp2515Chip::is_looping_back() const {
+  return mode_ == OperationMode::loopback && !entering_;
+}
+
 void Mcp2515Chip::start_loopback() {
-  if (mode_ != OperationMode::loopback || on_wire_ >= 0) {
+  if (!is_looping_back() || on_wire_ >= 0) {
     return;
   }
   on_wire_ = next_buffer();

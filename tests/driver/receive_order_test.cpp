@@ -253,6 +253,14 @@ class Interleaving {
 /// (raise chip select, lower it, two bytes), less than any frame takes on the bus.
 constexpr std::size_t apart = 5;
 
+/// The release build takes every choice of steps; a sanitizer needs the paths, not all the moments,
+/// and takes one in eleven.
+#ifdef __SANITIZE_ADDRESS__
+constexpr std::size_t stride = 11;
+#else
+constexpr std::size_t stride = 1;
+#endif
+
 /// Three frames at every choice of steps.
 template <bool WithLine, std::uint8_t RxQueue>
 void expect_order_at_every_interleaving(Program program) {
@@ -264,7 +272,7 @@ void expect_order_at_every_interleaving(Program program) {
     const std::size_t end = interleaving.run(before, {0, 40, 80}) + 1;
     for (std::size_t first = 0; first < end; ++first) {
       for (std::size_t second = first + apart; second < end; ++second) {
-        for (std::size_t third = second + apart; third < end; ++third) {
+        for (std::size_t third = second + apart + second % stride; third < end; third += stride) {
           interleaving.run(before, {first, second, third});
           ++runs;
           lossless += interleaving.all_accepted() ? 1U : 0U;
@@ -275,7 +283,7 @@ void expect_order_at_every_interleaving(Program program) {
       }
     }
   }
-  EXPECT_GT(runs, 10'000U);
+  EXPECT_GT(runs, 10'000U / stride);
   EXPECT_GT(lossless, runs / 4) << "enough of them leave the chip room";
 }
 

@@ -321,6 +321,19 @@ TEST(Mcp2515Modes, LoopbackIsNotLeftInTheMiddleOfAFrame) {
   EXPECT_EQ(rig.read(0x2C), 0x05) << "and it works again";
 }
 
+TEST(Mcp2515Modes, WhatIsRequestedOnTheWayOutOfLoopbackGoesToTheBus) {
+  ChipRig rig;
+  rig.go(0x40);
+  rig.load_standard(0, 0x123);
+  rig.write(0x0F, 0x00);
+  rig.run_bits(5);
+  ASSERT_EQ(rig.read(0x0E) & 0xE0, 0x40) << "eleven recessive bits have not passed";
+  rig.request_to_send(1);
+  rig.run_bits(200);
+  EXPECT_EQ(rig.on_bus, Texts{"123 DLC 1 5A"});
+  EXPECT_EQ(rig.read(0x2C), 0x04) << "sent, and not received by itself";
+}
+
 TEST(Mcp2515Modes, AResetEndsALoopbackUnderWay) {
   ChipRig rig;
   rig.go(0x40);

@@ -159,6 +159,7 @@ class Mcp2515Chip : private ControllerClient {
   [[nodiscard]] int next_buffer() const;
   [[nodiscard]] Frame transmit_frame(int buffer) const;
   void transmission_done(const Frame& frame);
+  [[nodiscard]] bool is_looping_back() const;
   void start_loopback();
   void finish_loopback(const Frame& frame);
 
