@@ -1,0 +1,180 @@
+/// Serial records: how bytes become records that cannot be mistaken for others, and back. The same
+/// code runs on the bridge and on the PC. What is in them is serial_protocol.hpp's.
+///
+///   record = COBS( body, CRC-32C ) 0x00      body 2..56 bytes
+///
+/// No heap, no state but what is shown; bounded by the length of a record.
+/// Source: docs/serial-protocol.md "Records".
+#ifndef ROIO_SERIAL_RECORD_HPP
+#define ROIO_SERIAL_RECORD_HPP
+
+#include <stdint.h>
+
+#include <roio/crc32c.hpp>
+
+namespace roio {
+namespace serial {
+
+constexpr uint8_t check_length = 4;
+constexpr uint8_t min_body = 2;
+constexpr uint8_t max_body = 56;
+/// On the line: a byte of COBS, body, check, delimiter.
+constexpr uint8_t max_record = 1 + max_body + check_length + 1;
+constexpr uint8_t delimiter = 0;
+
+/// Writes one record into a Sink, byte by byte.
+///
+///   struct Sink { void put(uint8_t offset, uint8_t byte); };  // in no order; offset < max_record
+///
+///   RecordWriter<Sink> writer(sink, session);
+///   writer.put(...);                      // the body: max_body bytes at most
+///   const uint8_t length = writer.finish();
+template <typename Sink>
+class RecordWriter {
+ public:
+  RecordWriter(Sink& sink, uint32_t session) : sink_(sink), check_(session), zero_(0), at_(1) {}
+
+  void put(uint8_t byte) {
+    check_.add(byte);
+    append(byte);
+  }
+  void put16(uint16_t value) {
+    put(static_cast<uint8_t>(value >> 8));
+    put(static_cast<uint8_t>(value));
+  }
+  void put32(uint32_t value) {
+    put16(static_cast<uint16_t>(value >> 16));
+    put16(static_cast<uint16_t>(value));
+  }
+
+  /// @return how many bytes the record has.
+  uint8_t finish() {
+    const uint32_t check = check_.value();
+    append(static_cast<uint8_t>(check));
+    append(static_cast<uint8_t>(check >> 8));
+    append(static_cast<uint8_t>(check >> 16));
+    append(static_cast<uint8_t>(check >> 24));
+    append(delimiter);  // ends the last block as a zero does, and stays one
+    sink_.put(zero_, delimiter);
+    return at_;
+  }
+
+ private:
+  // A zero is known by its distance to the next one, so it is written when that comes.
+  void append(uint8_t byte) {
+    if (byte == 0) {
+      sink_.put(zero_, static_cast<uint8_t>(at_ - zero_));
+      zero_ = at_;
+    } else {
+      sink_.put(at_, byte);
+    }
+    ++at_;
+  }
+
+  Sink& sink_;
+  Crc32c check_;
+  uint8_t zero_;  // where the last zero, or the record's first byte, is to be told
+  uint8_t at_;
+};
+
+/// Finds records in a stream of bytes.
+///
+///   if (reader.take(byte) == RecordReader::Event::record && reader.is_intact(session))
+///     use(reader.body(), reader.length());
+class RecordReader {
+ public:
+  enum class Event : uint8_t {
+    none,     ///< Nothing has ended.
+    record,   ///< One has ended that is whole as far as COBS goes; is_intact() says whether it is.
+    damaged,  ///< What has ended breaks COBS, or is too short or too long.
+  };
+
+  RecordReader() : length_(0), block_(0), state_(State::empty), buffer_() {}
+
+  Event take(uint8_t byte) {
+    if (byte == delimiter) {
+      return end();
+    }
+    switch (state_) {
+      case State::ended:
+        length_ = 0;
+        block_ = 0;
+        state_ = State::empty;
+        break;
+      case State::broken:
+        return Event::none;
+      default:
+        break;
+    }
+    if (block_ == 0) {
+      begin_block(byte);
+    } else {
+      --block_;
+      store(byte);
+    }
+    return Event::none;
+  }
+
+  /// Of the record that take() has just told of; until the next byte.
+  bool is_intact(uint32_t session) const {
+    Crc32c check(session);
+    for (uint8_t i = 0; i < length(); ++i) {
+      check.add(buffer_[i]);
+    }
+    const uint8_t* const tail = buffer_ + length();
+    const uint32_t value = check.value();
+    return tail[0] == static_cast<uint8_t>(value) && tail[1] == static_cast<uint8_t>(value >> 8) &&
+           tail[2] == static_cast<uint8_t>(value >> 16) &&
+           tail[3] == static_cast<uint8_t>(value >> 24);
+  }
+  const uint8_t* body() const { return buffer_; }
+  /// Without the check.
+  uint8_t length() const { return static_cast<uint8_t>(length_ - check_length); }
+
+ private:
+  enum class State : uint8_t {
+    empty,   // nothing since a delimiter
+    inside,  // of a record
+    broken,  // of something that cannot be one
+    ended,   // the buffer is the reader's user's
+  };
+
+  // A block's first byte says how far its zero is; the first of all has none before it.
+  void begin_block(uint8_t code) {
+    if (state_ == State::inside) {
+      store(0);
+    } else {
+      state_ = State::inside;
+    }
+    block_ = static_cast<uint8_t>(code - 1U);
+  }
+
+  void store(uint8_t byte) {
+    if (length_ == sizeof buffer_) {
+      state_ = State::broken;
+      return;
+    }
+    buffer_[length_++] = byte;
+  }
+
+  Event end() {
+    const State state = state_;
+    state_ = State::ended;
+    if (state == State::empty || state == State::ended) {
+      return Event::none;
+    }
+    return state == State::inside && block_ == 0 && length_ >= min_body + check_length
+               ? Event::record
+               : Event::damaged;
+  }
+
+  uint8_t length_;
+  uint8_t block_;  // bytes to come before the next code
+  State state_;
+  uint8_t buffer_[max_body + check_length];
+};
+
+}  // namespace serial
+}  // namespace roio
+
+#endif
