@@ -123,10 +123,11 @@ function(add_arduino_image target board sketch)
   add_custom_target(${target} DEPENDS ${image}.elf)
 endfunction()
 
-# --- the examples -------------------------------------------------------------------
+# --- the USB bridge, and the examples -------------------------------------------------------------------
 
 add_custom_target(arduino_images)
-file(GLOB sketches CONFIGURE_DEPENDS ${roio_arduino_dir}/examples/*/*.ino)
+file(GLOB sketches CONFIGURE_DEPENDS ${roio_arduino_dir}/examples/*/*.ino
+     ${PROJECT_SOURCE_DIR}/bridge_usb/bridge_usb.ino)
 foreach(sketch IN LISTS sketches)
   cmake_path(GET sketch STEM name)
   foreach(board IN LISTS ROIO_BOARDS)

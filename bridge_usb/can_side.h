@@ -1,0 +1,252 @@
+/// CanSide: the bridge's MCP2515: finds its crystal and its INT line out, keeps it running, and
+/// keeps the outcomes of frames.
+///
+/// The chip lets everything through, and the filter is looked at here: to change the chip's own, it
+/// has to leave the bus for a millisecond, and what comes then is lost without a trace.
+#ifndef ROIO_BRIDGE_CAN_SIDE_H
+#define ROIO_BRIDGE_CAN_SIDE_H
+
+#include "clock.h"
+#include "config.h"
+
+namespace roio {
+namespace bridge {
+
+/// The Arduino port, but for a clock that is at hand, and an INT line that may not be there: then
+/// it counts as low, and the driver looks at the chip each time.
+class Port : public ArduinoPort<FixedPin<ROIO_BRIDGE_CS_PIN>, FixedPin<ROIO_BRIDGE_INT_PIN>> {
+  using Line = FixedPin<ROIO_BRIDGE_INT_PIN>;
+
+ public:
+  explicit Port(Clock& clock) : clock_(clock), is_wired_(false) {}
+
+  bool interrupt_line_is_low() { return !is_wired_ || Line::is_low(); }
+  uint32_t microseconds() { return clock_.ticks() * serial::ticks_us; }
+
+  bool is_wired() const { return is_wired_; }
+  /// Has the chip pull the line by a flag that nothing else sets, and looks at it.
+  void find_interrupt_line() {
+    set_wake_up_flag(true);
+    const bool goes_low = Line::is_low();
+    set_wake_up_flag(false);
+    is_wired_ = goes_low && !Line::is_low();
+  }
+
+ private:
+  /// WAKIE and WAKIF.
+  void set_wake_up_flag(bool on) {
+    constexpr uint8_t wake_up = 0x40;
+    constexpr mcp2515::Register registers[] = {mcp2515::Register::caninte,
+                                               mcp2515::Register::canintf};
+    for (const mcp2515::Register address : registers) {
+      Transaction transaction(*this);
+      transaction.exchange(static_cast<uint8_t>(mcp2515::Instruction::bit_modify));
+      transaction.exchange(static_cast<uint8_t>(address));
+      transaction.exchange(wake_up);
+      transaction.exchange(on ? wake_up : 0);
+    }
+  }
+
+  Clock& clock_;
+  bool is_wired_;
+};
+
+/// What became of the last 16 frames of the session, two bits each, as RESULTS has it. The driver's
+/// token of a frame is its slot, and which session's it is: those of a former one may still come to
+/// an end.
+class Slots {
+ public:
+  static constexpr uint8_t no_token = 0xFF;  ///< Of a frame that has no slot.
+
+  Slots() : bytes_(), generation_(0), pending_(0), has_news_(false) {}
+
+  void begin_session() {
+    for (uint8_t& byte : bytes_) {
+      byte = 0;
+    }
+    generation_ = static_cast<uint8_t>((generation_ + 1U) % generations);
+    pending_ = 0;
+    has_news_ = false;
+  }
+  uint8_t token_of(uint8_t sequence) const {
+    return static_cast<uint8_t>((generation_ << 4) | (sequence & 0x0FU));
+  }
+  void begin(uint8_t token) {
+    put(token, serial::Outcome::pending);
+    ++pending_;
+  }
+  void end(uint8_t token, serial::Outcome outcome) {
+    if ((token >> 4) != generation_) {
+      return;
+    }
+    put(token, outcome);
+    --pending_;
+    has_news_ = true;
+  }
+  bool any_pending() const { return pending_ != 0; }
+  bool take_news() {
+    const bool had = has_news_;
+    has_news_ = false;
+    return had;
+  }
+  /// Slots 4n+3..4n.
+  uint8_t byte(uint8_t n) const { return bytes_[n]; }
+
+ private:
+  static constexpr uint8_t generations = 15;  // with a 16th, no_token would be a token
+
+  void put(uint8_t token, serial::Outcome outcome) {
+    static const uint8_t ones[4] = {0x01, 0x04, 0x10, 0x40};  // an AVR shifts bit by bit
+    uint8_t& byte = bytes_[(token >> 2) & 3U];
+    const uint8_t one = ones[token & 3U];
+    byte = static_cast<uint8_t>((byte & ~(one * 3U)) | (one * static_cast<uint8_t>(outcome)));
+  }
+
+  uint8_t bytes_[4];
+  uint8_t generation_;
+  uint8_t pending_;
+  bool has_news_;
+};
+
+class CanSide {
+  struct Traits : Mcp2515Traits {
+    using Count = uint32_t;
+    static constexpr bool all_kinds = true;
+    static constexpr bool reports_outcomes = true;
+    void on_outcome(uint8_t token, TxOutcome outcome) {
+      slots.end(token, outcome == TxOutcome::sent      ? serial::Outcome::sent
+                       : outcome == TxOutcome::unknown ? serial::Outcome::unknown
+                                                       : serial::Outcome::not_sent);
+    }
+    Slots slots;
+  };
+  /// All of a window may be urgent, and the chip has one of those.
+  using Driver = Mcp2515<Port, 0, serial::window - 1, Traits>;
+
+ public:
+  explicit CanSide(Clock& clock)
+      : driver_(clock),
+        clock_(clock),
+        osc_hz_(0),
+        bitrate_bps_(default_bitrate_bps),
+        mode_(serial::Mode::normal),
+        start_status_(Status::no_chip),
+        tried_at_(0),
+        is_stopped_(false) {}
+
+  void begin() {
+    driver_.port().begin();
+    start();
+  }
+
+  /// Starts the controller anew with these. What it had to send is unknown from then on.
+  /// @return as Mcp2515::begin(); with bad_argument and bad_timing nothing has changed.
+  Status configure(uint32_t bitrate_bps, serial::Mode mode) {
+    if (static_cast<uint8_t>(mode) > static_cast<uint8_t>(serial::Mode::loopback)) {
+      return Status::bad_argument;
+    }
+    if (osc_hz_ != 0 && !is_valid(compute_bit_timing(osc_hz_, bitrate_bps))) {
+      return Status::bad_timing;
+    }
+    bitrate_bps_ = bitrate_bps;
+    mode_ = mode;
+    return start();
+  }
+  /// Off the bus, until configure().
+  void stop() {
+    driver_.stop();
+    is_stopped_ = true;
+  }
+
+  /// Takes up again a controller that was lost, or not there: a try takes up to 180 ms.
+  void tend() {
+    constexpr uint16_t retry = Clock::coarse_of_ms(250);
+    if (!driver_.running() && !is_stopped_ &&
+        static_cast<uint16_t>(clock_.coarse() - tried_at_) >= retry) {
+      start();
+    }
+  }
+
+  Status receive(Mcp2515Frame& frame) { return driver_.receive(frame); }
+  bool more_waits() { return driver_.port().is_wired() && driver_.port().interrupt_line_is_low(); }
+  /// @param token comes back to slots() with the frame's outcome.
+  Status send(const Frame& frame, uint8_t token) { return driver_.send(frame, token); }
+
+  bool is_stopped() const { return is_stopped_; }
+  serial::State state() const {
+    return driver_.running()                     ? static_cast<serial::State>(driver_.state())
+           : start_status_ == Status::wrong_mode ? serial::State::stuck
+                                                 : serial::State::no_chip;
+  }
+  void read_error_counters(uint8_t& transmit, uint8_t& receive) {
+    transmit = receive = 0;
+    if (driver_.running()) {
+      driver_.read_error_counters(transmit, receive);
+    }
+  }
+  const Driver::Counters& counters() const { return driver_.counters(); }
+  Slots& slots() { return driver_.traits().slots; }
+  /// 0: no controller answers.
+  uint32_t osc_hz() const { return osc_hz_; }
+  bool interrupt_is_wired() { return driver_.port().is_wired(); }
+  uint32_t bitrate_bps() const { return bitrate_bps_; }
+  serial::Mode mode() const { return mode_; }
+
+ private:
+  static Mcp2515Config config_of(uint32_t osc_hz, uint32_t bitrate_bps, mcp2515::Mode mode) {
+    return Mcp2515Config(compute_bit_timing(osc_hz, bitrate_bps), mcp2515_filters_of_everything(),
+                         mode);
+  }
+
+  Status start() {
+    is_stopped_ = false;
+    start_status_ = osc_hz_ == 0 ? find_crystal() : Status::ok;
+    if (start_status_ == Status::ok) {
+      start_status_ = driver_.begin(config_of(osc_hz_, bitrate_bps_, driver_mode()));
+    }
+    tried_at_ = clock_.coarse();
+    return start_status_;
+  }
+
+  mcp2515::Mode driver_mode() const {
+    return mode_ == serial::Mode::normal        ? mcp2515::Mode::normal
+           : mode_ == serial::Mode::listen_only ? mcp2515::Mode::listen_only
+                                                : mcp2515::Mode::loopback;
+  }
+
+  /// Measures it against the processor's own, and takes the nearest that modules are sold with.
+  Status find_crystal() {
+    constexpr uint32_t guess_hz = 16000000;
+    uint32_t measured_hz = 0;
+    const Status status = driver_.check_clock(
+        config_of(guess_hz, default_bitrate_bps, mcp2515::Mode::loopback), guess_hz, measured_hz);
+    if (measured_hz == 0) {
+      return status == Status::ok ? Status::no_chip : status;
+    }
+    static constexpr uint8_t crystals_mhz[] = {8, 10, 12, 16, 20, 24};
+    for (const uint8_t mhz : crystals_mhz) {
+      const uint32_t hz = mhz * UINT32_C(1000000);
+      const uint32_t off = measured_hz > hz ? measured_hz - hz : hz - measured_hz;
+      if (off < hz / 16U) {
+        osc_hz_ = hz;
+        driver_.port().find_interrupt_line();
+        return Status::ok;
+      }
+    }
+    return Status::wrong_clock;
+  }
+
+  Driver driver_;
+  Clock& clock_;
+  uint32_t osc_hz_;
+  uint32_t bitrate_bps_;
+  serial::Mode mode_;
+  Status start_status_;
+  uint16_t tried_at_;
+  bool is_stopped_;
+};
+
+}  // namespace bridge
+}  // namespace roio
+
+#endif

@@ -1,0 +1,171 @@
+/// UartLine: the serial line by the processor's UART. Both directions are buffered by interrupts;
+/// what overflows is counted. Arduino's Serial is not used: its interrupts take twice as long, and
+/// at 1 Mbit/s a byte comes every 160 cycles.
+#ifndef ROIO_BRIDGE_LINE_UART_H
+#define ROIO_BRIDGE_LINE_UART_H
+
+#include <Arduino.h>
+#include <avr/interrupt.h>
+
+#include "ring.h"
+
+// The UART of the board's USB chip; a Leonardo has only the one on its pins. Bits have the same
+// places in all.
+#if defined(UCSR0A)
+#define ROIO_UCSRA UCSR0A
+#define ROIO_UCSRB UCSR0B
+#define ROIO_UCSRC UCSR0C
+#define ROIO_UBRR UBRR0
+#define ROIO_UDR UDR0
+#if defined(USART_RX_vect)
+#define ROIO_RX_VECTOR USART_RX_vect
+#define ROIO_UDRE_VECTOR USART_UDRE_vect
+#else
+#define ROIO_RX_VECTOR USART0_RX_vect
+#define ROIO_UDRE_VECTOR USART0_UDRE_vect
+#endif
+#else
+#define ROIO_UCSRA UCSR1A
+#define ROIO_UCSRB UCSR1B
+#define ROIO_UCSRC UCSR1C
+#define ROIO_UBRR UBRR1
+#define ROIO_UDR UDR1
+#define ROIO_RX_VECTOR USART1_RX_vect
+#define ROIO_UDRE_VECTOR USART1_UDRE_vect
+#endif
+
+namespace roio {
+namespace bridge {
+
+// Outside the class: an interrupt has no object.
+static Ring uart_in;
+static Ring uart_out;
+static volatile uint16_t uart_overruns;
+
+class UartLine {
+ public:
+  static constexpr bool rate_matters = true;
+
+  UartLine() : held_(false), idle_(true), overruns_(0) {}
+
+  void begin(uint32_t rate_bps) {
+    ROIO_UCSRB = 0;
+    ROIO_UCSRC = bit_of(1) | bit_of(2);  // UCSZ: 8 bits, no parity, 1 stop bit
+    set_rate(rate_bps);
+    ROIO_UCSRB = receive_interrupt | receiver | transmitter;
+  }
+
+  /// Of the rates in serial_protocol.hpp, which but for 115200 are exact at 16 MHz.
+  void set_rate(uint32_t rate_bps) {
+    ROIO_UCSRA = double_speed;
+    ROIO_UBRR = static_cast<uint16_t>((F_CPU / 4 / rate_bps - 1) / 2);
+  }
+
+  bool take(uint8_t& byte) {
+    const uint8_t tail = uart_in.tail;
+    if (tail == uart_in.head) {
+      return false;
+    }
+    byte = uart_in.bytes[tail];
+    uart_in.tail = static_cast<uint8_t>(tail + 1U);
+    return true;
+  }
+
+  uint8_t room() const { return uart_out.room(); }
+  /// @param offset from the first byte that is not committed yet.
+  void put(uint8_t offset, uint8_t byte) {
+    uart_out.bytes[static_cast<uint8_t>(uart_out.head + offset)] = byte;
+  }
+  void commit(uint8_t count) {
+    uart_out.head = static_cast<uint8_t>(uart_out.head + count);
+    if (!held_) {
+      send();
+    }
+  }
+
+  /// While it is held, what is committed waits.
+  void hold() { held_ = true; }
+  void release() {
+    held_ = false;
+    if (uart_out.size() != 0) {
+      send();
+    }
+  }
+
+  /// Whether the last bit of all that was committed is on the line.
+  bool is_drained() {
+    if (uart_out.size() != 0) {
+      return false;
+    }
+    if (!idle_) {
+      idle_ = (ROIO_UCSRA & transmit_complete) != 0;
+    }
+    return idle_;
+  }
+
+  /// Bytes that came and were lost, since the start.
+  uint32_t overruns() {
+    // The interrupt counts in 16 bits, which are added up here.
+    const uint8_t before = SREG;
+    cli();
+    const uint16_t more = uart_overruns;
+    uart_overruns = 0;
+    SREG = before;
+    overruns_ += more;
+    return overruns_;
+  }
+
+  void pump() {}
+
+ private:
+  static constexpr uint8_t bit_of(uint8_t bit) { return static_cast<uint8_t>(1U << bit); }
+  static constexpr uint8_t double_speed = 1U << 1;       // U2X
+  static constexpr uint8_t transmit_complete = 1U << 6;  // TXC
+  static constexpr uint8_t receive_interrupt = 1U << 7;  // RXCIE
+  static constexpr uint8_t receiver = 1U << 4;           // RXEN
+  static constexpr uint8_t transmitter = 1U << 3;        // TXEN
+  static constexpr uint8_t empty_interrupt = 1U << 5;    // UDRIE
+
+  void send() {
+    idle_ = false;
+    // Cleared by writing a one: from here on it says that nothing is left.
+    ROIO_UCSRA = double_speed | transmit_complete;
+    ROIO_UCSRB |= empty_interrupt;
+  }
+
+  bool held_;
+  bool idle_;
+  uint32_t overruns_;
+};
+
+}  // namespace bridge
+}  // namespace roio
+
+ISR(ROIO_RX_VECTOR) {
+  using roio::bridge::uart_in;
+  const uint8_t overrun = ROIO_UCSRA & (1U << 3);  // DOR: one or more were lost before this one
+  const uint8_t byte = ROIO_UDR;
+  const uint8_t head = uart_in.head;
+  const uint8_t next = static_cast<uint8_t>(head + 1U);
+  const bool is_full = next == uart_in.tail;
+  if (!is_full) {
+    uart_in.bytes[head] = byte;
+    uart_in.head = next;
+  }
+  if (overrun != 0 || is_full) {
+    ++roio::bridge::uart_overruns;
+  }
+}
+
+ISR(ROIO_UDRE_VECTOR) {
+  using roio::bridge::uart_out;
+  const uint8_t tail = uart_out.tail;
+  ROIO_UDR = uart_out.bytes[tail];
+  const uint8_t next = static_cast<uint8_t>(tail + 1U);
+  uart_out.tail = next;
+  if (next == uart_out.head) {
+    ROIO_UCSRB &= static_cast<uint8_t>(~(1U << 5));  // UDRIE
+  }
+}
+
+#endif

@@ -1,0 +1,69 @@
+/// UsbLine: the serial line of a board whose processor has USB itself (Leonardo, Micro). USB
+/// carries its own check and has flow control; so nothing overflows here, and the rate means
+/// nothing.
+#ifndef ROIO_BRIDGE_LINE_USB_H
+#define ROIO_BRIDGE_LINE_USB_H
+
+#include <Arduino.h>
+
+#include "ring.h"
+
+namespace roio {
+namespace bridge {
+
+class UsbLine {
+ public:
+  static constexpr bool rate_matters = false;
+
+  UsbLine() : out_(), held_(false) {}
+
+  void begin(uint32_t rate_bps) { Serial.begin(rate_bps); }
+  void set_rate(uint32_t) {}
+
+  bool take(uint8_t& byte) {
+    const int read = Serial.read();
+    byte = static_cast<uint8_t>(read);
+    return read >= 0;
+  }
+
+  uint8_t room() const { return out_.room(); }
+  /// @param offset from the first byte that is not committed yet.
+  void put(uint8_t offset, uint8_t byte) {
+    out_.bytes[static_cast<uint8_t>(out_.head + offset)] = byte;
+  }
+  void commit(uint8_t count) { out_.head = static_cast<uint8_t>(out_.head + count); }
+
+  void hold() { held_ = true; }
+  void release() { held_ = false; }
+  bool is_drained() const { return out_.size() == 0; }
+  static uint32_t overruns() { return 0; }
+
+  /// Gives USB what it has room for; never more, for that would wait for the PC.
+  void pump() {
+    if (held_ || out_.size() == 0) {
+      return;
+    }
+    const int room = Serial.availableForWrite();
+    uint8_t count = out_.size();
+    const uint16_t to_the_end = static_cast<uint16_t>(sizeof out_.bytes - out_.tail);
+    if (count > to_the_end) {
+      count = static_cast<uint8_t>(to_the_end);
+    }
+    if (room <= 0) {
+      return;
+    }
+    if (count > room) {
+      count = static_cast<uint8_t>(room);
+    }
+    out_.tail = static_cast<uint8_t>(out_.tail + Serial.write(out_.bytes + out_.tail, count));
+  }
+
+ private:
+  Ring out_;
+  bool held_;
+};
+
+}  // namespace bridge
+}  // namespace roio
+
+#endif
