@@ -17,6 +17,10 @@
 #define ROIO_BRIDGE_OVER_USB
 #endif
 
+/// What is done for each frame, and has to keep up with a full bus. All else is compiled for size, as
+/// Arduino does it.
+#define ROIO_BRIDGE_FAST __attribute__((optimize("O2")))
+
 namespace roio {
 namespace bridge {
 

@@ -1,6 +1,6 @@
 /// UartLine: the serial line by the processor's UART. Both directions are buffered by interrupts;
-/// what overflows is counted. Arduino's Serial is not used: its interrupts take twice as long, and
-/// at 1 Mbit/s a byte comes every 160 cycles.
+/// what overflows is counted. Arduino's Serial is not used: at 1 Mbit/s a byte comes every 160
+/// cycles, its interrupt takes half of them and these a quarter.
 #ifndef ROIO_BRIDGE_LINE_UART_H
 #define ROIO_BRIDGE_LINE_UART_H
 
@@ -38,8 +38,10 @@ namespace roio {
 namespace bridge {
 
 // Outside the class: an interrupt has no object.
-static Ring uart_in;
-static Ring uart_out;
+static RingEnds uart_in;
+static RingEnds uart_out;
+static uint8_t uart_in_bytes[ring_size];
+static uint8_t uart_out_bytes[ring_size];
 static volatile uint16_t uart_overruns;
 
 class UartLine {
@@ -66,7 +68,7 @@ class UartLine {
     if (tail == uart_in.head) {
       return false;
     }
-    byte = uart_in.bytes[tail];
+    byte = uart_in_bytes[tail];
     uart_in.tail = static_cast<uint8_t>(tail + 1U);
     return true;
   }
@@ -74,7 +76,7 @@ class UartLine {
   uint8_t room() const { return uart_out.room(); }
   /// @param offset from the first byte that is not committed yet.
   void put(uint8_t offset, uint8_t byte) {
-    uart_out.bytes[static_cast<uint8_t>(uart_out.head + offset)] = byte;
+    uart_out_bytes[static_cast<uint8_t>(uart_out.head + offset)] = byte;
   }
   void commit(uint8_t count) {
     uart_out.head = static_cast<uint8_t>(uart_out.head + count);
@@ -141,31 +143,57 @@ class UartLine {
 }  // namespace bridge
 }  // namespace roio
 
-ISR(ROIO_RX_VECTOR) {
-  using roio::bridge::uart_in;
-  const uint8_t overrun = ROIO_UCSRA & (1U << 3);  // DOR: one or more were lost before this one
-  const uint8_t byte = ROIO_UDR;
-  const uint8_t head = uart_in.head;
-  const uint8_t next = static_cast<uint8_t>(head + 1U);
-  const bool is_full = next == uart_in.tail;
-  if (!is_full) {
-    uart_in.bytes[head] = byte;
-    uart_in.head = next;
-  }
-  if (overrun != 0 || is_full) {
-    ++roio::bridge::uart_overruns;
-  }
+// In assembly, for each byte of the line takes one of these, and a compiler saves twice as many
+// registers. 46 and 50 cycles, from what was
+// going on to what goes on.
+// The ends are head, tail.
+
+ISR(ROIO_RX_VECTOR, ISR_NAKED) {
+  __asm__ volatile(
+      "push r24\n push r30\n push r31\n in r24, __SREG__\n push r24\n"
+      "lds r31, %[ucsra]\n"      // before the byte is read: then it tells of the next
+      "lds r24, %[udr]\n"
+      "lds r30, %[ends]\n"   // head
+      "sbrc r31, 3\n"            // DOR: one or more were lost before this one
+      "rjmp 3f\n"
+      "1: ldi r31, 0\n subi r30, lo8(-(%[ring]))\n sbci r31, hi8(-(%[ring]))\n"
+      "st Z, r24\n"              // nobody reads it until head has moved
+      "lds r30, %[ends]\n"
+      "inc r30\n"
+      "lds r24, %[ends]+1\n"   // tail
+      "cp r30, r24\n"
+      "breq 4f\n"
+      "sts %[ends], r30\n"
+      "2: pop r24\n out __SREG__, r24\n pop r31\n pop r30\n pop r24\n reti\n"
+      "3: rcall 5f\n rjmp 1b\n"
+      "4: rcall 5f\n rjmp 2b\n"
+      // one more overrun; r24 and r30 stay
+      "5: lds r31, %[count]\n inc r31\n sts %[count], r31\n brne 6f\n"
+      "lds r31, %[count]+1\n inc r31\n sts %[count]+1, r31\n"
+      "6: ret\n"
+      :
+      : [ucsra] "n"(_SFR_MEM_ADDR(ROIO_UCSRA)), [udr] "n"(_SFR_MEM_ADDR(ROIO_UDR)),
+        [ring] "i"(roio::bridge::uart_in_bytes), [ends] "i"(&roio::bridge::uart_in), [count] "i"(&roio::bridge::uart_overruns));
 }
 
-ISR(ROIO_UDRE_VECTOR) {
-  using roio::bridge::uart_out;
-  const uint8_t tail = uart_out.tail;
-  ROIO_UDR = uart_out.bytes[tail];
-  const uint8_t next = static_cast<uint8_t>(tail + 1U);
-  uart_out.tail = next;
-  if (next == uart_out.head) {
-    ROIO_UCSRB &= static_cast<uint8_t>(~(1U << 5));  // UDRIE
-  }
+ISR(ROIO_UDRE_VECTOR, ISR_NAKED) {
+  __asm__ volatile(
+      "push r30\n push r31\n in r30, __SREG__\n push r30\n"
+      "lds r30, %[ends]+1\n"  // tail
+      "ldi r31, 0\n subi r30, lo8(-(%[ring]))\n sbci r31, hi8(-(%[ring]))\n"
+      "ld r31, Z\n"
+      "sts %[udr], r31\n"
+      "lds r30, %[ends]+1\n"
+      "inc r30\n"
+      "sts %[ends]+1, r30\n"
+      "lds r31, %[ends]\n"  // head
+      "cpse r30, r31\n"
+      "rjmp 1f\n"
+      "lds r30, %[ucsrb]\n andi r30, 0xDF\n sts %[ucsrb], r30\n"  // all is sent: UDRIE off
+      "1: pop r30\n out __SREG__, r30\n pop r31\n pop r30\n reti\n"
+      :
+      : [ucsrb] "n"(_SFR_MEM_ADDR(ROIO_UCSRB)), [udr] "n"(_SFR_MEM_ADDR(ROIO_UDR)),
+        [ring] "i"(roio::bridge::uart_out_bytes), [ends] "i"(&roio::bridge::uart_out));
 }
 
 #endif

@@ -15,7 +15,7 @@ class UsbLine {
  public:
   static constexpr bool rate_matters = false;
 
-  UsbLine() : out_(), held_(false) {}
+  UsbLine() : out_(), out_bytes_(), held_(false) {}
 
   void begin(uint32_t rate_bps) { Serial.begin(rate_bps); }
   void set_rate(uint32_t) {}
@@ -29,7 +29,7 @@ class UsbLine {
   uint8_t room() const { return out_.room(); }
   /// @param offset from the first byte that is not committed yet.
   void put(uint8_t offset, uint8_t byte) {
-    out_.bytes[static_cast<uint8_t>(out_.head + offset)] = byte;
+    out_bytes_[static_cast<uint8_t>(out_.head + offset)] = byte;
   }
   void commit(uint8_t count) { out_.head = static_cast<uint8_t>(out_.head + count); }
 
@@ -45,7 +45,7 @@ class UsbLine {
     }
     const int room = Serial.availableForWrite();
     uint8_t count = out_.size();
-    const uint16_t to_the_end = static_cast<uint16_t>(sizeof out_.bytes - out_.tail);
+    const uint16_t to_the_end = static_cast<uint16_t>(sizeof out_bytes_ - out_.tail);
     if (count > to_the_end) {
       count = static_cast<uint8_t>(to_the_end);
     }
@@ -55,11 +55,12 @@ class UsbLine {
     if (count > room) {
       count = static_cast<uint8_t>(room);
     }
-    out_.tail = static_cast<uint8_t>(out_.tail + Serial.write(out_.bytes + out_.tail, count));
+    out_.tail = static_cast<uint8_t>(out_.tail + Serial.write(out_bytes_ + out_.tail, count));
   }
 
  private:
-  Ring out_;
+  RingEnds out_;
+  uint8_t out_bytes_[ring_size];
   bool held_;
 };
 

@@ -37,8 +37,9 @@ class Session {
         change_(Change::none),
         new_rate_bps_(0),
         heard_at_(0),
-        rule_count_(1),
-        rules_() {}  // one rule that compares nothing: everything passes
+        everything_passes_(true),
+        rule_count_(0),
+        rules_() {}
 
   bool is_open() const { return session_ != serial::no_session; }
 
@@ -82,7 +83,7 @@ class Session {
   static constexpr uint8_t results_again = 0x08;
   static constexpr uint8_t status = 0x10;
   static constexpr uint8_t counters = 0x20;
-  /// Frames leave as much for them.
+  /// What frames leave free for them.
   static constexpr uint8_t reserve = serial::results_length + serial::check_length + 2;
   static constexpr uint8_t record_overhead = serial::check_length + 2;
 
@@ -105,7 +106,8 @@ class Session {
   Status set_filter(const uint8_t* payload, uint8_t length);
   Status set_speed(const uint8_t* payload);
   void echo(const uint8_t* payload, uint8_t length);
-  bool passes(uint32_t tag) const;
+  bool passes(const uint8_t* tag_bytes) const;
+  uint8_t put_body(const Mcp2515Frame& frame, uint16_t ticks, uint8_t* body) const;
   void tend_speed(uint16_t now);
   void send_answers();
   void send_welcome();
@@ -140,6 +142,7 @@ class Session {
   Change change_;
   uint32_t new_rate_bps_;
   uint16_t heard_at_;
+  bool everything_passes_;
   uint8_t rule_count_;
   Rule rules_[serial::max_rules];
 };
@@ -310,11 +313,13 @@ inline Status Session::set_filter(const uint8_t* payload, uint8_t length) {
     return Status::bad_argument;
   }
   rule_count_ = count;
+  everything_passes_ = false;
   ++payload;
   for (uint8_t i = 0; i < count; ++i) {
     rules_[i].match = serial::get32(payload);
     rules_[i].mask = serial::get32(payload + 4);
     payload += sizeof(Rule);
+    everything_passes_ = everything_passes_ || rules_[i].mask == 0;
   }
   return Status::ok;
 }
@@ -345,7 +350,8 @@ inline void Session::echo(const uint8_t* payload, uint8_t length) {
 
 // --- up ------------------------------------------------------------------------------------------
 
-inline bool Session::passes(uint32_t tag) const {
+inline bool Session::passes(const uint8_t* tag_bytes) const {
+  const uint32_t tag = serial::get32(tag_bytes);
   for (uint8_t i = 0; i < rule_count_; ++i) {
     if (((tag ^ rules_[i].match) & rules_[i].mask) == 0) {
       return true;
@@ -354,28 +360,53 @@ inline bool Session::passes(uint32_t tag) const {
   return false;
 }
 
-inline void Session::forward(const Mcp2515Frame& chip_frame, uint16_t ticks) {
-  const Frame frame = mcp2515::from_chip(chip_frame);
-  const uint32_t tag = tagged_id(frame);
-  if (!passes(tag)) {
+/// The body of a frame's record, from the chip's bytes: no word is ever put together, which an AVR
+/// would do byte by byte and bit by bit.
+/// @return its length.
+inline uint8_t Session::put_body(const Mcp2515Frame& frame, uint16_t ticks, uint8_t* body) const {
+  const uint8_t* chip = frame.bytes;
+  const bool remote = frame.is_remote();
+  if (frame.is_extended()) {
+    body[0] = static_cast<uint8_t>((remote ? 0xC0 : 0x80) | (chip[0] >> 3));
+    body[1] = static_cast<uint8_t>((chip[0] << 5) | ((chip[1] >> 3) & 0x1C) | (chip[1] & 0x03));
+    body[2] = chip[2];
+    body[3] = chip[3];
+  } else {
+    body[0] = remote ? 0x40 : 0x00;
+    body[1] = 0;
+    body[2] = static_cast<uint8_t>(chip[0] >> 5);
+    body[3] = static_cast<uint8_t>((chip[0] << 3) | (chip[1] >> 5));
+  }
+  body[serial::sequence_at] = static_cast<uint8_t>(due_);
+  body[serial::time_at] = static_cast<uint8_t>(ticks >> 8);
+  body[serial::time_at + 1] = static_cast<uint8_t>(ticks);
+  const uint8_t length = frame.length();
+  uint8_t* payload = body + serial::frame_head_up;
+  if (remote) {
+    *payload = length;
+    return serial::frame_head_up + 1;
+  }
+  for (uint8_t i = 0; i < length; ++i) {
+    payload[i] = frame.data()[i];
+  }
+  return static_cast<uint8_t>(serial::frame_head_up + length);
+}
+
+ROIO_BRIDGE_FAST inline void Session::forward(const Mcp2515Frame& frame, uint16_t ticks) {
+  uint8_t body[serial::frame_head_up + max_data_length];
+  const uint8_t length = put_body(frame, ticks, body);
+  if (!everything_passes_ && !passes(body)) {
     return;
   }
-  const uint8_t sequence = static_cast<uint8_t>(due_);
   ++due_;
   if (!is_open()) {
     return;
   }
-  const uint8_t length = serial::frame_head_up + max_data_length;
-  if (!has_room(length + reserve)) {
+  if (!has_room(static_cast<uint8_t>(length + reserve))) {
     ++tally_.dropped;
     return;
   }
-  Writer writer(line_, session_);
-  writer.put32(tag);
-  writer.put(sequence);
-  writer.put16(ticks);
-  serial::put_payload(writer, frame.kind, frame.length, frame.data);
-  line_.commit(writer.finish());
+  line_.commit(serial::write_record(line_, session_, body, length));
 }
 
 inline void Session::tend() {

@@ -62,6 +62,12 @@ class Crc32c {
     register_ = (register_ >> 8) ^ detail::crc32c_entry(static_cast<uint8_t>(register_ ^ byte));
   }
   uint32_t value() const { return ~register_; }
+  /// The value's bytes one after the other, lowest first. Ends the sum.
+  uint8_t take_byte() {
+    const uint8_t byte = static_cast<uint8_t>(~register_);
+    register_ >>= 8;
+    return byte;
+  }
 
  private:
   uint32_t register_;

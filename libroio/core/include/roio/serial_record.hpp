@@ -77,6 +77,36 @@ class RecordWriter {
   uint8_t at_;
 };
 
+/// Writes a body that is there already: the same record, faster, since the compiler sees the loop.
+/// @param length min_body..max_body.
+/// @return how many bytes the record has.
+template <typename Sink>
+__attribute__((always_inline)) inline uint8_t write_record(Sink& sink, uint32_t session,
+                                                           const uint8_t* body, uint8_t length) {
+  Crc32c check(session);
+  uint8_t zero = 0;
+  uint8_t at = 1;
+  for (uint8_t left = static_cast<uint8_t>(length + check_length); left != 0; --left) {
+    uint8_t byte = 0;
+    if (left > check_length) {
+      byte = *body++;
+      check.add(byte);
+    } else {
+      byte = check.take_byte();
+    }
+    if (byte != 0) {
+      sink.put(at, byte);
+    } else {
+      sink.put(zero, static_cast<uint8_t>(at - zero));
+      zero = at;
+    }
+    ++at;
+  }
+  sink.put(zero, static_cast<uint8_t>(at - zero));
+  sink.put(at, delimiter);
+  return static_cast<uint8_t>(at + 1U);
+}
+
 /// Finds records in a stream of bytes.
 ///
 ///   if (reader.take(byte) == RecordReader::Event::record && reader.is_intact(session))
