@@ -12,7 +12,7 @@
     slcan_side.h              SLCAN
     own_node.h                the bridge as a node of the network
 */
-#include <RoioDriver.h>
+#include "config.h"
 
 #include "can_side.h"
 #include "clock.h"
@@ -35,31 +35,41 @@ static Session session(line, can, tally, node, indicator, clock);
 static SlcanSide slcan(line, can, tally, clock);
 
 // The chip holds two frames, so it comes before all else.
-static void takeFromBus() {
+// @return whether there was one.
+static bool takeFromBus() {
   roio::Mcp2515Frame frame;
-  while (can.receive(frame) == roio::Status::ok) {
-    const uint16_t ticks = Clock::low_ticks();
-    node.take(frame);
-    if (slcan.is_open()) {
-      slcan.forward(frame);
-    } else {
-      session.forward(frame, ticks);
-    }
-    if (!can.more_waits()) {
-      break;
-    }
+  if (can.receive(frame) != roio::Status::ok) {
+    return false;
   }
+  const uint16_t ticks = Clock::low_ticks();
+  node.take(frame);
+  if (slcan.is_open()) {
+    slcan.forward(frame);
+  } else {
+    session.forward(frame, ticks);
+  }
+  return true;
 }
 
-// As much as fits between two looks at the bus.
-static void takeFromPc() {
-  constexpr uint8_t most = 8;
-  uint8_t byte;
-  for (uint8_t i = 0; i < most && line.take(byte); ++i) {
-    session.take(byte);
-    if (!session.is_open()) {
-      slcan.take(byte);
+static void takeFromPc(bool mayWait) {
+  constexpr uint8_t most = 24;
+  const uint8_t* bytes = nullptr;
+  uint8_t count = line.peek(bytes);
+  if (count > most) {
+    count = most;
+  }
+  if (count != 0 && !session.has_record()) {
+    const bool isText = !session.is_open();
+    session.take(bytes, count);
+    if (isText) {
+      for (uint8_t i = 0; i < count; ++i) {
+        slcan.take(bytes[i]);
+      }
     }
+    line.consume(count);
+  }
+  if (session.has_record() && !(mayWait && can.has_received())) {
+    session.serve();
   }
 }
 
@@ -71,13 +81,24 @@ void setup() {
 }
 
 void loop() {
-  takeFromBus();
-  takeFromPc();
-  if (session.is_open()) {
-    slcan.leave();
+  // What the PC sends can wait, it never sends more than there is room for; but not for ever.
+  constexpr uint8_t mostInARow = 250;
+  static uint8_t inARow = 0;
+  if (takeFromBus() && ++inARow != mostInARow) {
+    return;
   }
-  session.tend();
-  can.tend();
-  indicator.tend();
+  const bool mayWait = inARow != mostInARow;
+  inARow = 0;
+  const bool ticks = clock.update();  // about every millisecond
+  takeFromPc(mayWait);
+  session.answer();
   line.pump();
+  if (ticks) {
+    if (session.is_open()) {
+      slcan.leave();
+    }
+    session.tend();
+    can.tend();
+    indicator.tend();
+  }
 }

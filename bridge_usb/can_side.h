@@ -58,7 +58,7 @@ class Slots {
  public:
   static constexpr uint8_t no_token = 0xFF;  ///< Of a frame that has no slot.
 
-  Slots() : bytes_(), generation_(0), pending_(0), has_news_(false) {}
+  Slots() : bytes_(), generation_(0), pending_(0), news_(0) {}
 
   void begin_session() {
     for (uint8_t& byte : bytes_) {
@@ -66,7 +66,7 @@ class Slots {
     }
     generation_ = static_cast<uint8_t>((generation_ + 1U) % generations);
     pending_ = 0;
-    has_news_ = false;
+    news_ = 0;
   }
   uint8_t token_of(uint8_t sequence) const {
     return static_cast<uint8_t>((generation_ << 4) | (sequence & 0x0FU));
@@ -81,18 +81,24 @@ class Slots {
     }
     put(token, outcome);
     --pending_;
-    has_news_ = true;
+    add_news();
   }
   bool any_pending() const { return pending_ != 0; }
-  bool take_news() {
-    const bool had = has_news_;
-    has_news_ = false;
-    return had;
+  /// What the PC does not know yet: a frame was taken, or came to its end.
+  void add_news() { ++news_; }
+  void take_news() { news_ = 0; }
+  bool has_news() const { return news_ != 0; }
+  /// Several are told at once, the more so while the bus is busy with others' frames; a frame that
+  /// is alone is told at once.
+  bool is_news_due(bool is_busy) const {
+    return news_ != 0 && (news_ >= (is_busy ? busy_news : enough_news) || pending_ == 0);
   }
   /// Slots 4n+3..4n.
   uint8_t byte(uint8_t n) const { return bytes_[n]; }
 
  private:
+  static constexpr uint8_t enough_news = 6;
+  static constexpr uint8_t busy_news = 12;
   static constexpr uint8_t generations = 15;  // with a 16th, no_token would be a token
 
   void put(uint8_t token, serial::Outcome outcome) {
@@ -105,7 +111,7 @@ class Slots {
   uint8_t bytes_[4];
   uint8_t generation_;
   uint8_t pending_;
-  bool has_news_;
+  uint8_t news_;
 };
 
 class CanSide {
@@ -132,6 +138,7 @@ class CanSide {
         mode_(serial::Mode::normal),
         start_status_(Status::no_chip),
         tried_at_(0),
+        looked_at_(0),
         is_stopped_(false) {}
 
   void begin() {
@@ -167,10 +174,25 @@ class CanSide {
     }
   }
 
-  Status receive(Mcp2515Frame& frame) { return driver_.receive(frame); }
-  bool more_waits() { return driver_.port().is_wired() && driver_.port().interrupt_line_is_low(); }
+  /// As Mcp2515::receive(). While the INT line says that nothing has come, the chip is asked only
+  /// now and then, for what became of frames: that takes ten times as long as not to ask.
+  Status receive(Mcp2515Frame& frame) {
+    constexpr uint8_t interval = 48 / serial::ticks_us;
+    const uint8_t now = static_cast<uint8_t>(Clock::low_ticks());
+    if (!driver_.port().interrupt_line_is_low() &&
+        static_cast<uint8_t>(now - looked_at_) < interval) {
+      return Status::empty;
+    }
+    looked_at_ = now;
+    return driver_.receive(frame);
+  }
+  /// Whether the INT line says that a frame waits.
+  bool has_received() {
+    return driver_.port().is_wired() && driver_.port().interrupt_line_is_low();
+  }
   /// @param token comes back to slots() with the frame's outcome.
   Status send(const Frame& frame, uint8_t token) { return driver_.send(frame, token); }
+  Status send(const Mcp2515Frame& frame, uint8_t token) { return driver_.send(frame, token); }
 
   bool is_stopped() const { return is_stopped_; }
   serial::State state() const {
@@ -204,6 +226,7 @@ class CanSide {
     if (start_status_ == Status::ok) {
       start_status_ = driver_.begin(config_of(osc_hz_, bitrate_bps_, driver_mode()));
     }
+    clock_.update();  // that may have taken a while
     tried_at_ = clock_.coarse();
     return start_status_;
   }
@@ -243,6 +266,7 @@ class CanSide {
   serial::Mode mode_;
   Status start_status_;
   uint16_t tried_at_;
+  uint8_t looked_at_;
   bool is_stopped_;
 };
 

@@ -12,7 +12,7 @@ namespace bridge {
 /// Must be read at least every 262 ms.
 class Clock {
  public:
-  Clock() : high_(0), last_(0) {}
+  Clock() : high_(0), last_(0), coarse_(0) {}
 
   static void begin() {
     TCCR1A = 0;
@@ -24,16 +24,24 @@ class Clock {
   static uint16_t low_ticks() { return TCNT1; }
 
   uint32_t ticks() {
+    update();
+    return (static_cast<uint32_t>(high_) << 16) | last_;
+  }
+
+  /// Units of 1.024 ms, modulo 2^16, as of the last update(): for timeouts.
+  uint16_t coarse() const { return coarse_; }
+  /// @return whether coarse() is another one than before.
+  bool update() {
     const uint16_t low = TCNT1;
+    const uint8_t middle = static_cast<uint8_t>(low >> 8);
     if (low < last_) {
       ++high_;
     }
     last_ = low;
-    return (static_cast<uint32_t>(high_) << 16) | low;
+    const bool is_new = middle != static_cast<uint8_t>(coarse_);
+    coarse_ = static_cast<uint16_t>(static_cast<uint16_t>(high_ << 8) | middle);
+    return is_new;
   }
-
-  /// Units of 1.024 ms, modulo 2^16: for timeouts.
-  uint16_t coarse() { return static_cast<uint16_t>(ticks() >> 8); }
   static constexpr uint16_t coarse_of_ms(uint16_t ms) {
     return static_cast<uint16_t>(static_cast<uint32_t>(ms) * 1000U / 1024U);
   }
@@ -41,6 +49,7 @@ class Clock {
  private:
   uint16_t high_;
   uint16_t last_;
+  uint16_t coarse_;
 };
 
 }  // namespace bridge

@@ -2,7 +2,11 @@
 #ifndef ROIO_BRIDGE_CONFIG_H
 #define ROIO_BRIDGE_CONFIG_H
 
+// The driver has to keep up with a full bus; all else is compiled for size, as Arduino does it.
+#pragma GCC push_options
+#pragma GCC optimize("O2")
 #include <RoioDriver.h>
+#pragma GCC pop_options
 
 #ifndef ROIO_BRIDGE_CS_PIN
 #define ROIO_BRIDGE_CS_PIN 10
@@ -17,8 +21,8 @@
 #define ROIO_BRIDGE_OVER_USB
 #endif
 
-/// What is done for each frame, and has to keep up with a full bus. All else is compiled for size, as
-/// Arduino does it.
+/// What is done for each frame, and has to keep up with a full bus. All else is compiled for size,
+/// as Arduino does it.
 #define ROIO_BRIDGE_FAST __attribute__((optimize("O2")))
 
 namespace roio {

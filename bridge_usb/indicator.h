@@ -52,8 +52,9 @@ class Indicator {
     if (has_led) {
       digitalWrite(LED_BUILTIN, on ? HIGH : LOW);
     } else if (on && line_.is_drained()) {
+      Line::Sink sink = line_.sink();
       for (uint8_t i = 0; i < burst; ++i) {
-        line_.put(i, serial::delimiter);
+        sink.put(i, serial::delimiter);
       }
       line_.commit(burst);
     }

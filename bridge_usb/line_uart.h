@@ -63,21 +63,25 @@ class UartLine {
     ROIO_UBRR = static_cast<uint16_t>((F_CPU / 4 / rate_bps - 1) / 2);
   }
 
-  bool take(uint8_t& byte) {
+  /// What has come, as far as it lies in one piece; consume() what was used of it.
+  /// @return how many bytes; 0: none.
+  uint8_t peek(const uint8_t*& bytes) const {
     const uint8_t tail = uart_in.tail;
-    if (tail == uart_in.head) {
-      return false;
-    }
-    byte = uart_in_bytes[tail];
-    uart_in.tail = static_cast<uint8_t>(tail + 1U);
-    return true;
+    const uint8_t head = uart_in.head;
+    bytes = uart_in_bytes + tail;
+    return static_cast<uint8_t>(head >= tail ? head - tail : 0 - tail);
   }
+  void consume(uint8_t count) { uart_in.tail = static_cast<uint8_t>(uart_in.tail + count); }
 
   uint8_t room() const { return uart_out.room(); }
-  /// @param offset from the first byte that is not committed yet.
-  void put(uint8_t offset, uint8_t byte) {
-    uart_out_bytes[static_cast<uint8_t>(uart_out.head + offset)] = byte;
-  }
+  /// Where records are written, from the first byte that is not committed yet.
+  struct Sink {
+    uint8_t begin;
+    void put(uint8_t offset, uint8_t byte) {
+      uart_out_bytes[static_cast<uint8_t>(begin + offset)] = byte;
+    }
+  };
+  Sink sink() const { return Sink{uart_out.head}; }
   void commit(uint8_t count) {
     uart_out.head = static_cast<uint8_t>(uart_out.head + count);
     if (!held_) {
@@ -151,16 +155,16 @@ class UartLine {
 ISR(ROIO_RX_VECTOR, ISR_NAKED) {
   __asm__ volatile(
       "push r24\n push r30\n push r31\n in r24, __SREG__\n push r24\n"
-      "lds r31, %[ucsra]\n"      // before the byte is read: then it tells of the next
+      "lds r31, %[ucsra]\n"  // before the byte is read: then it tells of the next
       "lds r24, %[udr]\n"
-      "lds r30, %[ends]\n"   // head
-      "sbrc r31, 3\n"            // DOR: one or more were lost before this one
+      "lds r30, %[ends]\n"  // head
+      "sbrc r31, 3\n"       // DOR: one or more were lost before this one
       "rjmp 3f\n"
       "1: ldi r31, 0\n subi r30, lo8(-(%[ring]))\n sbci r31, hi8(-(%[ring]))\n"
-      "st Z, r24\n"              // nobody reads it until head has moved
+      "st Z, r24\n"  // nobody reads it until head has moved
       "lds r30, %[ends]\n"
       "inc r30\n"
-      "lds r24, %[ends]+1\n"   // tail
+      "lds r24, %[ends]+1\n"  // tail
       "cp r30, r24\n"
       "breq 4f\n"
       "sts %[ends], r30\n"
@@ -173,7 +177,8 @@ ISR(ROIO_RX_VECTOR, ISR_NAKED) {
       "6: ret\n"
       :
       : [ucsra] "n"(_SFR_MEM_ADDR(ROIO_UCSRA)), [udr] "n"(_SFR_MEM_ADDR(ROIO_UDR)),
-        [ring] "i"(roio::bridge::uart_in_bytes), [ends] "i"(&roio::bridge::uart_in), [count] "i"(&roio::bridge::uart_overruns));
+        [ring] "i"(roio::bridge::uart_in_bytes), [ends] "i"(&roio::bridge::uart_in),
+        [count] "i"(&roio::bridge::uart_overruns));
 }
 
 ISR(ROIO_UDRE_VECTOR, ISR_NAKED) {

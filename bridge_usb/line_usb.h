@@ -15,22 +15,33 @@ class UsbLine {
  public:
   static constexpr bool rate_matters = false;
 
-  UsbLine() : out_(), out_bytes_(), held_(false) {}
+  UsbLine() : in_at_(0), in_end_(0), in_bytes_(), out_(), out_bytes_(), held_(false) {}
 
   void begin(uint32_t rate_bps) { Serial.begin(rate_bps); }
   void set_rate(uint32_t) {}
 
-  bool take(uint8_t& byte) {
-    const int read = Serial.read();
-    byte = static_cast<uint8_t>(read);
-    return read >= 0;
+  /// What has come, as far as it lies in one piece; consume() what was used of it.
+  /// @return how many bytes; 0: none.
+  uint8_t peek(const uint8_t*& bytes) {
+    if (in_at_ == in_end_) {
+      in_at_ = in_end_ = 0;
+      while (in_end_ < sizeof in_bytes_ && Serial.available() > 0) {
+        in_bytes_[in_end_++] = static_cast<uint8_t>(Serial.read());
+      }
+    }
+    bytes = in_bytes_ + in_at_;
+    return static_cast<uint8_t>(in_end_ - in_at_);
   }
+  void consume(uint8_t count) { in_at_ = static_cast<uint8_t>(in_at_ + count); }
 
   uint8_t room() const { return out_.room(); }
-  /// @param offset from the first byte that is not committed yet.
-  void put(uint8_t offset, uint8_t byte) {
-    out_bytes_[static_cast<uint8_t>(out_.head + offset)] = byte;
-  }
+  /// Where records are written, from the first byte that is not committed yet.
+  struct Sink {
+    uint8_t* bytes;
+    uint8_t begin;
+    void put(uint8_t offset, uint8_t byte) { bytes[static_cast<uint8_t>(begin + offset)] = byte; }
+  };
+  Sink sink() { return Sink{out_bytes_, out_.head}; }
   void commit(uint8_t count) { out_.head = static_cast<uint8_t>(out_.head + count); }
 
   void hold() { held_ = true; }
@@ -59,6 +70,9 @@ class UsbLine {
   }
 
  private:
+  uint8_t in_at_;
+  uint8_t in_end_;
+  uint8_t in_bytes_[64];  // as much as USB brings at once
   RingEnds out_;
   uint8_t out_bytes_[ring_size];
   bool held_;

@@ -31,7 +31,9 @@ class Session {
         previous_due_(0),
         next_(0),
         gap_told_(false),
+        has_record_(false),
         wanted_(0),
+        next_counter_(0),
         reply_request_(0),
         reply_status_(Status::ok),
         change_(Change::none),
@@ -43,38 +45,63 @@ class Session {
 
   bool is_open() const { return session_ != serial::no_session; }
 
-  /// Takes in one byte from the PC.
-  void take(uint8_t byte) {
-    switch (reader_.take(byte)) {
-      case serial::RecordReader::Event::none:
-        return;
-      case serial::RecordReader::Event::damaged:
-        ++tally_.damaged;
-        return;
-      case serial::RecordReader::Event::record:
-        break;
-    }
-    const uint8_t first = reader_.body()[0];
-    if (!reader_.is_intact(serial::session_of(first, session_))) {
+  /// Takes in bytes from the PC, up to the end of a record; then serve() comes first.
+  /// @param count how many there are; becomes how many were taken.
+  ROIO_BRIDGE_FAST void take(const uint8_t* bytes, uint8_t& count) {
+    const serial::RecordReader::Event event = reader_.take(bytes, count);
+    if (event == serial::RecordReader::Event::damaged) {
       ++tally_.damaged;
-      return;
     }
-    if (first == static_cast<uint8_t>(serial::Down::hello)) {
-      hello(reader_.body(), reader_.length());
+    has_record_ = event == serial::RecordReader::Event::record;
+  }
+  bool has_record() const { return has_record_; }
+
+  /// Does what the record says that take() has found.
+  ROIO_BRIDGE_FAST void serve() {
+    has_record_ = false;
+    const uint8_t* const body = reader_.body();
+    if (!reader_.is_intact(serial::session_of(body[0], session_))) {
+      ++tally_.damaged;
+    } else if (body[0] == static_cast<uint8_t>(serial::Down::hello)) {
+      hello(body, reader_.length());
     } else if (is_open()) {
       heard();
-      serve(reader_.body(), reader_.length());
+      serve(body, reader_.length());
     }
   }
 
   /// A frame from the bus, and when it was read.
   void forward(const Mcp2515Frame& frame, uint16_t ticks);
 
-  /// What goes by time, and what waits for room.
+  /// To be called often: what waits for room, or has become worth telling.
+  void answer();
+  /// To be called every millisecond: what goes by time.
   void tend();
 
  private:
-  using Writer = serial::RecordWriter<Line>;
+  /// The body of a control record, put together.
+  class Body {
+   public:
+    Body(serial::Up operation, uint32_t due) : end_(bytes_) {
+      put(static_cast<uint8_t>(operation));
+      put(static_cast<uint8_t>(due));
+    }
+    void put(uint8_t byte) { *end_++ = byte; }
+    void put16(uint16_t value) {
+      put(static_cast<uint8_t>(value >> 8));
+      put(static_cast<uint8_t>(value));
+    }
+    void put32(uint32_t value) {
+      put16(static_cast<uint16_t>(value >> 16));
+      put16(static_cast<uint16_t>(value));
+    }
+    const uint8_t* bytes() const { return bytes_; }
+    uint8_t length() const { return static_cast<uint8_t>(end_ - bytes_); }
+
+   private:
+    uint8_t* end_;
+    uint8_t bytes_[serial::max_body];
+  };
 
   // Answers that wait for room.
   static constexpr uint8_t welcome = 0x01;
@@ -85,6 +112,8 @@ class Session {
   static constexpr uint8_t counters = 0x20;
   /// What frames leave free for them.
   static constexpr uint8_t reserve = serial::results_length + serial::check_length + 2;
+  /// With that much room in the line it is quiet.
+  static constexpr uint8_t quiet_room = 255 - 2 * serial::max_record / 3;
   static constexpr uint8_t record_overhead = serial::check_length + 2;
 
   enum class Change : uint8_t { none, draining, on_trial };
@@ -99,25 +128,24 @@ class Session {
   void end();
   void serve(const uint8_t* body, uint8_t length);
   void take_frame(const uint8_t* body, uint8_t length);
+  static bool read_body(const uint8_t* body, uint8_t length, Mcp2515Frame& frame);
   void notice_sequence(uint8_t sequence);
   void control(serial::Down operation, const uint8_t* payload, uint8_t length);
-  void answer(uint8_t request, Status status);
+  void reply_to(uint8_t request, Status status);
   Status set_bus(const uint8_t* payload);
   Status set_filter(const uint8_t* payload, uint8_t length);
   Status set_speed(const uint8_t* payload);
   void echo(const uint8_t* payload, uint8_t length);
   bool passes(const uint8_t* tag_bytes) const;
   uint8_t put_body(const Mcp2515Frame& frame, uint16_t ticks, uint8_t* body) const;
-  void tend_speed(uint16_t now);
+  void change_speed();
   void send_answers();
   void send_welcome();
   void send_status();
   void send_counters();
   void send_results();
-  void begin_control(Writer& writer, serial::Up operation) const {
-    writer.put(static_cast<uint8_t>(operation));
-    writer.put(static_cast<uint8_t>(due_));
-  }
+  void write(uint32_t session, const uint8_t* body, uint8_t length);
+  void write(const Body& body) { write(session_, body.bytes(), body.length()); }
   bool has_room(uint8_t body_length) const {
     return line_.room() >= static_cast<uint8_t>(body_length + record_overhead);
   }
@@ -136,7 +164,9 @@ class Session {
   uint32_t previous_due_;
   uint8_t next_;  // sequence down
   bool gap_told_;
+  bool has_record_;
   uint8_t wanted_;
+  uint8_t next_counter_;
   uint8_t reply_request_;
   Status reply_status_;
   Change change_;
@@ -210,9 +240,49 @@ inline void Session::notice_sequence(uint8_t sequence) {
   }
 }
 
-inline void Session::take_frame(const uint8_t* body, uint8_t length) {
-  Frame frame;
-  if (!serial::read_frame(body, length, serial::frame_head_down, frame)) {
+/// The chip's bytes of a frame, from the body of its record: put_body() the other way round.
+/// @return false: none that a bus carries.
+inline bool Session::read_body(const uint8_t* body, uint8_t length, Mcp2515Frame& frame) {
+  const uint8_t kind = body[0] & serial::control_bits;
+  const uint8_t payload = static_cast<uint8_t>(length - serial::frame_head_down);
+  uint8_t* chip = frame.bytes;
+  if (length < serial::frame_head_down || (kind & 0x20) != 0) {
+    return false;
+  }
+  if ((kind & 0x80) != 0) {
+    chip[0] = static_cast<uint8_t>((body[0] << 3) | (body[1] >> 5));
+    chip[1] = static_cast<uint8_t>(((body[1] << 3) & 0xE0) | Mcp2515Frame::extended_bit |
+                                   (body[1] & 0x03));
+    chip[2] = body[2];
+    chip[3] = body[3];
+  } else {
+    if ((body[0] & 0x1F) != 0 || body[1] != 0 || body[2] > 7) {
+      return false;
+    }
+    chip[0] = static_cast<uint8_t>((body[2] << 5) | (body[3] >> 3));
+    chip[1] = static_cast<uint8_t>(body[3] << 5);
+    chip[2] = 0;
+    chip[3] = 0;
+  }
+  body += serial::frame_head_down;
+  if ((kind & 0x40) != 0) {
+    chip[4] = static_cast<uint8_t>(*body | Mcp2515Frame::remote_bit);
+    return payload == 1 && *body <= max_data_length;
+  }
+  if (payload > max_data_length) {
+    return false;
+  }
+  chip[4] = payload;
+  uint8_t* data = frame.data();
+  for (uint8_t left = payload; left != 0; --left) {
+    *data++ = *body++;
+  }
+  return true;
+}
+
+ROIO_BRIDGE_FAST inline void Session::take_frame(const uint8_t* body, uint8_t length) {
+  Mcp2515Frame frame;
+  if (!read_body(body, length, frame)) {
     ++tally_.damaged;
     return;
   }
@@ -233,7 +303,7 @@ inline void Session::take_frame(const uint8_t* body, uint8_t length) {
   }
   next_ = static_cast<uint8_t>(next_ + 1U);
   gap_told_ = false;
-  wanted_ |= results;
+  slots.add_news();
 }
 
 inline void Session::control(serial::Down operation, const uint8_t* payload, uint8_t length) {
@@ -241,6 +311,7 @@ inline void Session::control(serial::Down operation, const uint8_t* payload, uin
     wanted_ |= status;
     if (payload[0] != 0) {
       wanted_ |= counters;
+      next_counter_ = 0;
     }
     if (can_.slots().any_pending()) {
       wanted_ |= results;
@@ -294,10 +365,10 @@ inline void Session::control(serial::Down operation, const uint8_t* payload, uin
     default:
       break;
   }
-  answer(request, result);
+  reply_to(request, result);
 }
 
-inline void Session::answer(uint8_t request, Status result) {
+inline void Session::reply_to(uint8_t request, Status result) {
   reply_request_ = request;
   reply_status_ = result;
   wanted_ |= reply;
@@ -340,15 +411,21 @@ inline void Session::echo(const uint8_t* payload, uint8_t length) {
   if (!has_room(static_cast<uint8_t>(serial::control_head + length))) {
     return;  // the PC asks again
   }
-  Writer writer(line_, session_);
-  begin_control(writer, serial::Up::echoed);
+  Body body(serial::Up::echoed, due_);
   for (uint8_t i = 0; i < length; ++i) {
-    writer.put(payload[i]);
+    body.put(payload[i]);
   }
-  line_.commit(writer.finish());
+  write(body);
 }
 
 // --- up ------------------------------------------------------------------------------------------
+
+/// There is room.
+ROIO_BRIDGE_FAST __attribute__((noinline)) inline void Session::write(uint32_t session,
+                                                                      const uint8_t* body,
+                                                                      uint8_t length) {
+  line_.commit(serial::write_record(line_.sink(), session, body, length));
+}
 
 inline bool Session::passes(const uint8_t* tag_bytes) const {
   const uint32_t tag = serial::get32(tag_bytes);
@@ -406,130 +483,129 @@ ROIO_BRIDGE_FAST inline void Session::forward(const Mcp2515Frame& frame, uint16_
     ++tally_.dropped;
     return;
   }
-  line_.commit(serial::write_record(line_, session_, body, length));
+  write(session_, body, length);
 }
 
-inline void Session::tend() {
-  if (!is_open() && wanted_ == 0) {
-    return;
-  }
-  const uint16_t now = clock_.coarse();
-  if (can_.slots().take_news()) {
+ROIO_BRIDGE_FAST inline void Session::answer() {
+  if (can_.slots().is_news_due(line_.room() < quiet_room) && is_open()) {
     wanted_ |= results;
   }
   if (wanted_ != 0) {
     send_answers();
   }
-  if (change_ != Change::none) {
-    tend_speed(now);
-  }
-  if (is_open() &&
-      static_cast<uint16_t>(now - heard_at_) >= Clock::coarse_of_ms(serial::pc_silence_ms)) {
-    end();
-  }
-}
-
-inline void Session::tend_speed(uint16_t now) {
   if (change_ == Change::draining) {
-    if ((wanted_ & reply) != 0 || !line_.is_drained()) {
-      return;
-    }
-    if (new_rate_bps_ == 0) {
-      end();
-      return;
-    }
-    line_.set_rate(new_rate_bps_);
-    line_.hold();
-    change_ = Change::on_trial;
-    heard_at_ = now;
-  } else if (static_cast<uint16_t>(now - heard_at_) >=
-             Clock::coarse_of_ms(serial::speed_trial_ms)) {
+    change_speed();
+  }
+}
+
+inline void Session::tend() {
+  if (!is_open()) {
+    return;
+  }
+  if (can_.slots().has_news()) {
+    wanted_ |= results;
+  }
+  const uint16_t silence = static_cast<uint16_t>(clock_.coarse() - heard_at_);
+  if (silence >= Clock::coarse_of_ms(change_ == Change::on_trial ? serial::speed_trial_ms
+                                                                 : serial::pc_silence_ms)) {
     end();
   }
 }
 
+inline void Session::change_speed() {
+  if ((wanted_ & reply) != 0 || !line_.is_drained()) {
+    return;
+  }
+  if (new_rate_bps_ == 0) {
+    end();
+    return;
+  }
+  line_.set_rate(new_rate_bps_);
+  line_.hold();
+  change_ = Change::on_trial;
+  heard_at_ = clock_.coarse();
+}
+
+/// One at a time, so that the bus does not wait.
 inline void Session::send_answers() {
   if ((wanted_ & welcome) != 0 && has_room(serial::welcome_length)) {
     wanted_ &= static_cast<uint8_t>(~welcome);
     send_welcome();
-  }
-  if ((wanted_ & reply) != 0 && has_room(serial::reply_length)) {
+  } else if ((wanted_ & reply) != 0 && has_room(serial::reply_length)) {
     wanted_ &= static_cast<uint8_t>(~reply);
-    Writer writer(line_, session_);
-    begin_control(writer, serial::Up::reply);
-    writer.put(reply_request_);
-    writer.put(static_cast<uint8_t>(reply_status_));
-    line_.commit(writer.finish());
-  }
-  if ((wanted_ & (results | results_again)) != 0 && has_room(serial::results_length)) {
+    Body body(serial::Up::reply, due_);
+    body.put(reply_request_);
+    body.put(static_cast<uint8_t>(reply_status_));
+    write(body);
+  } else if ((wanted_ & (results | results_again)) != 0 && has_room(serial::results_length)) {
     send_results();
     wanted_ &= static_cast<uint8_t>(~(results | results_again));
-  }
-  if ((wanted_ & status) != 0 && has_room(serial::status_length)) {
+  } else if ((wanted_ & status) != 0 && has_room(serial::status_length)) {
     wanted_ &= static_cast<uint8_t>(~status);
     send_status();
-  }
-  if ((wanted_ & counters) != 0 && has_room(serial::counters_length)) {
-    wanted_ &= static_cast<uint8_t>(~counters);
+  } else if ((wanted_ & counters) != 0 && has_room(serial::counters_length)) {
     send_counters();
   }
 }
 
 inline void Session::send_welcome() {
-  Writer writer(line_, serial::no_session);
-  begin_control(writer, serial::Up::welcome);
-  writer.put(serial::protocol_version);
-  writer.put32(welcomed_);
-  writer.put32(previous_);
-  writer.put32(previous_due_);
-  writer.put(ROIO_VERSION_MAJOR);
-  writer.put(ROIO_VERSION_MINOR);
-  writer.put(ROIO_VERSION_PATCH);
-  writer.put(static_cast<uint8_t>(board));
-  writer.put(static_cast<uint8_t>((Line::rate_matters ? serial::rate_matters : 0U) |
-                                  (can_.interrupt_is_wired() ? serial::interrupt_is_wired : 0U)));
-  writer.put(serial::window);
-  writer.put16(static_cast<uint16_t>(can_.osc_hz() / 1000U));
-  writer.put32(can_.bitrate_bps());
-  writer.put(static_cast<uint8_t>(can_.mode()));
-  writer.put(node_.address().subnet);
-  writer.put(node_.address().node);
-  writer.put((1U << serial::rate_count) - 1U);
-  line_.commit(writer.finish());
+  Body body(serial::Up::welcome, due_);
+  body.put(serial::protocol_version);
+  body.put32(welcomed_);
+  body.put32(previous_);
+  body.put32(previous_due_);
+  body.put(ROIO_VERSION_MAJOR);
+  body.put(ROIO_VERSION_MINOR);
+  body.put(ROIO_VERSION_PATCH);
+  body.put(static_cast<uint8_t>(board));
+  body.put(static_cast<uint8_t>((Line::rate_matters ? serial::rate_matters : 0U) |
+                                (can_.interrupt_is_wired() ? serial::interrupt_is_wired : 0U)));
+  body.put(serial::window);
+  body.put16(static_cast<uint16_t>(can_.osc_hz() / 1000U));
+  body.put32(can_.bitrate_bps());
+  body.put(static_cast<uint8_t>(can_.mode()));
+  body.put(node_.address().subnet);
+  body.put(node_.address().node);
+  body.put((1U << serial::rate_count) - 1U);
+  write(serial::no_session, body.bytes(), body.length());
 }
 
 inline void Session::send_status() {
   uint8_t transmit = 0;
   uint8_t receive = 0;
   can_.read_error_counters(transmit, receive);
-  Writer writer(line_, session_);
-  begin_control(writer, serial::Up::status);
-  writer.put32(clock_.ticks());
-  writer.put32(due_);
-  writer.put(static_cast<uint8_t>(can_.state()));
-  writer.put(transmit);
-  writer.put(receive);
-  line_.commit(writer.finish());
+  Body body(serial::Up::status, due_);
+  body.put32(clock_.ticks());
+  body.put32(due_);
+  body.put(static_cast<uint8_t>(can_.state()));
+  body.put(transmit);
+  body.put(receive);
+  write(body);
 }
 
+/// In parts, or the bus would wait too long.
 inline void Session::send_counters() {
-  Writer writer(line_, session_);
-  begin_control(writer, serial::Up::counters);
-  for (uint8_t i = 0; i < serial::counter_count; ++i) {
-    writer.put32(tally_.value(i));
+  Body body(serial::Up::counters, due_);
+  body.put(next_counter_);
+  for (uint8_t i = 0; i < serial::counters_at_once && next_counter_ < serial::counter_count; ++i) {
+    body.put32(tally_.value(next_counter_++));
   }
-  line_.commit(writer.finish());
+  write(body);
+  if (next_counter_ == serial::counter_count) {
+    next_counter_ = 0;
+    wanted_ &= static_cast<uint8_t>(~counters);
+  }
 }
 
 inline void Session::send_results() {
-  Writer writer(line_, session_);
-  begin_control(writer, serial::Up::results);
-  writer.put(next_);
-  writer.put((wanted_ & results_again) != 0 ? serial::again : uint8_t{0});
+  can_.slots().take_news();
+  Body body(serial::Up::results, due_);
+  body.put(next_);
+  body.put((wanted_ & results_again) != 0 ? serial::again : uint8_t{0});
   for (uint8_t n = 4; n-- != 0;) {
-    writer.put(can_.slots().byte(n));
+    body.put(can_.slots().byte(n));
   }
-  line_.commit(writer.finish());
+  write(body);
 }
 
 }  // namespace bridge

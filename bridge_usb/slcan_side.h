@@ -3,13 +3,11 @@
 #ifndef ROIO_BRIDGE_SLCAN_SIDE_H
 #define ROIO_BRIDGE_SLCAN_SIDE_H
 
-#include <RoioDriver.h>
-
-#include <roio/slcan.hpp>
-
 #include "can_side.h"
 #include "line.h"
 #include "tally.h"
+
+#include <roio/slcan.hpp>
 
 #define ROIO_VERSION_DIGITS_(major, minor) #major #minor
 #define ROIO_VERSION_DIGITS(major, minor) ROIO_VERSION_DIGITS_(major, minor)
@@ -58,7 +56,6 @@ class SlcanSide {
 
   /// A session of Roio's protocol takes over.
   void leave() {
-    reader_.reset();
     is_open_ = false;
     if (can_.is_stopped()) {
       can_.configure(can_.bitrate_bps(), serial::Mode::normal);
@@ -161,8 +158,9 @@ class SlcanSide {
     if (line_.room() < length) {
       return false;
     }
+    Line::Sink sink = line_.sink();
     for (uint8_t i = 0; i < length; ++i) {
-      line_.put(i, static_cast<uint8_t>(text[i]));
+      sink.put(i, static_cast<uint8_t>(text[i]));
     }
     line_.commit(length);
     return true;

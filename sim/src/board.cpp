@@ -104,6 +104,7 @@ class Board::Machine : public CanBus::Companion,
   struct Uart {
     std::unique_ptr<AvrUart> uart;
     std::function<void(std::uint8_t)> listener;
+    double sent_bps = 0;  // of the byte that the listener had last
   };
   [[nodiscard]] Uart& uart_slot(int number);
 
@@ -159,13 +160,15 @@ Board::Machine::Machine(CanBus& bus, BoardKind kind, const std::filesystem::path
     (void)mcu_pin(*options.interrupt_pin);
   }
   for (const McuUart& made : model_.uarts) {
-    uarts_.push_back({std::make_unique<AvrUart>(core, made.base), nullptr});
+    uarts_.push_back({std::make_unique<AvrUart>(core, made.base), nullptr, 0});
     Uart& slot = uarts_.back();
     slot.uart->on_send([this, number = made.number](Cycle end, std::uint8_t byte) {
       if (uart_slot(number).listener) {
-        post(end, [this, number, byte, era = era_] {
+        const double bitrate_bps = uart(number).bitrate_bps();
+        post(end, [this, number, byte, bitrate_bps, era = era_] {
           const auto listener = uart_slot(number).listener;
           if (listener && era == era_) {
+            uart_slot(number).sent_bps = bitrate_bps;
             listener(byte);
           }
         });
@@ -537,6 +540,10 @@ const SerialCounters& Board::serial_counters(int uart) const {
 
 double Board::serial_bitrate_bps(int uart) const {
   return machine_->uart(uart).bitrate_bps();
+}
+
+double Board::serial_sent_bitrate_bps(int uart) const {
+  return machine_->uart_slot(uart).sent_bps;
 }
 
 const char* to_string(Board::State state) {

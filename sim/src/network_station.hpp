@@ -9,8 +9,8 @@
 #include <roio/sim/network.hpp>
 #include <roio/sim/spi_wire.hpp>
 
+#include "controller_report.hpp"
 #include "network_exchange.hpp"
-#include "network_reports.hpp"
 
 namespace roio::sim {
 

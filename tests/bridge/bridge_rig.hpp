@@ -131,8 +131,14 @@ struct BridgeRig {
   }
   std::uint32_t counter(int index) {
     ask_status();
-    const auto counters = last(serial::Up::counters);
-    return counters ? serial::get32(counters->data() + 2 + 4 * index) : 0xFFFFFFFF;
+    for (const Bytes& body : records) {
+      if (body[0] == static_cast<std::uint8_t>(serial::Up::counters) && index >= body[2] &&
+          index < body[2] + static_cast<int>((body.size() - 3) / 4)) {
+        return serial::get32(body.data() + 3 + 4 * (index - body[2]));
+      }
+    }
+    ADD_FAILURE() << "no counters";
+    return 0;
   }
 
   // --- up ----------------------------------------------------------------------------------------

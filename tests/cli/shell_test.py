@@ -16,44 +16,62 @@ def read(*path):
         return file.read()
 
 
+COMMANDS = ["send", "dump", "buses", "bridge show", "bridge set", "bridge identify", "bridge attach"]
+
+
 class SyncTest(CliTest):
     def options(self, command):
         """Long options, and short ones that have no long form, as --help prints them."""
-        help_text = self.run_cli(command, "--help")[1]
+        help_text = self.run_cli(*command.split(), "--help")[1]
         found = re.findall(r"(?m)^  (?:-\w,)?(--[\w-]+|-\w)\b", help_text)
         self.assertIn("--help", found)
         return set(found) - {"--help"}
 
+    def section(self, command):
+        """What the manual says of a command: a page, or a part of one."""
+        page, _, action = command.partition(" ")
+        text = read("man", f"roio-cli-{page}.1")
+        return re.search(rf"(?sm)^\.Ss {action}$.*?(?=^\.S[sh])", text)[0] if action else text
+
     def test_manual_pages_describe_every_option(self):
-        for command in ("send", "dump"):
-            page = read("man", f"roio-cli-{command}.1")
+        for command in COMMANDS:
             described = set()
-            for flag in re.findall(r"(?m)^\.It (Fl .*)$", page):
+            for flag in re.findall(r"(?m)^\.It (Fl .*)$", self.section(command)):
                 for part in flag.split(" , "):
                     words = part.replace("Fl Fl ", "--").replace("Fl ", "-").split()
                     described.add(words[0])
             self.assertEqual(described - {"-v"}, self.options(command), command)
 
-    def test_completions_offer_every_option(self):
-        for command in ("send", "dump"):
-            expected = self.options(command)
-            bash = re.search(rf"{command}:-\*\) echo (.*); return", read("completions",
-                                                                       "roio-cli.bash"))[1]
-            self.assertEqual(set(bash.split()) - {"--help"}, expected)
-            zsh = re.search(rf"(?s)_roio_cli_{command}\(\).*?\n}}", read("completions", "_roio-cli"))
+    def test_bash_offers_every_option(self):
+        text = read("completions", "roio-cli.bash")
+        for command in COMMANDS:
+            offered = re.search(rf"(?m)^    {command.split()[-1]}:-\*\) echo (.*); return", text)[1]
+            self.assertEqual(set(offered.split()) - {"--help"}, self.options(command), command)
+
+    def test_zsh_offers_every_option(self):
+        text = read("completions", "_roio-cli")
+        for command in COMMANDS:
+            name = {"buses": "buses_command"}.get(command, command.replace(" ", "_"))
+            part = re.search(rf"(?s)_roio_cli_{name}\(\).*?\n}}", text)[0]
             self.assertEqual(
-                set(re.findall(r"(--[\w-]+|(?<![\w-])-\w)\[", zsh[0])) |
-                set(re.findall(r"{-\w,(--[\w-]+)}", zsh[0])) - {"--help"}, expected)
-            fish = re.findall(rf"__fish_seen_subcommand_from {command}'? (?:-s (\w) )?(?:-l ([\w-]+))?",
-                              read("completions", "roio-cli.fish"))
-            offered = {"--" + long if long else "-" + short for short, long in fish if short or long}
-            self.assertEqual(offered, expected)
+                set(re.findall(r"(--[\w-]+|(?<![\w-])-\w)\[", part)) |
+                set(re.findall(r"{-\w,(--[\w-]+)}", part)) - {"--help"}, self.options(command),
+                command)
+
+    def test_fish_offers_every_option(self):
+        text = read("completions", "roio-cli.fish")
+        for command in COMMANDS:
+            of = (command.replace("bridge", "__roio_cli_bridge") if " " in command else
+                  "__fish_seen_subcommand_from " + command)
+            found = re.findall(rf"-n '{of}' (?:-s (\w) )?(?:-l ([\w-]+))?", text)
+            offered = {"--" + long if long else "-" + short for short, long in found if short or long}
+            self.assertEqual(offered, self.options(command), command)
 
 
 class ManualTest(CliTest):
     def test_pages_are_clean(self):
         pages = sorted(glob.glob(os.path.join(TOOL, "man", "*.1")))
-        self.assertEqual(len(pages), 3)
+        self.assertEqual(len(pages), 5)
         done = subprocess.run(
             ["mandoc", "-Tlint", "-Wwarning", *pages], capture_output=True, text=True, timeout=GUARD
         )
@@ -72,7 +90,7 @@ class CompletionTest(CliTest):
 
     # command line, what is offered: bash replaces what follows the last ':' or '='
     LINES = [
-        ("roio-cli ", ["--help", "--version", "dump", "send"]),
+        ("roio-cli ", ["--help", "--version", "bridge", "buses", "dump", "send"]),
         ("roio-cli d", ["dump"]),
         ("roio-cli send --cl", ["--class"]),
         ("roio-cli send --class s", ["stream", "system"]),
@@ -82,6 +100,14 @@ class CompletionTest(CliTest):
         ("roio-cli send local:robot ", []),
         ("roio-cli dump local:robot u", ["urgent"]),
         ("roio-cli dump local:robot urgent class=s", ["class=stream", "class=system"]),
+        ("roio-cli dump serial:a", ["serial:auto"]),
+        ("roio-cli buses --j", ["--json"]),
+        ("roio-cli bridge s", ["set", "show"]),
+        ("roio-cli bridge show a", ["auto"]),
+        ("roio-cli bridge set --mode ", ["listen", "loopback", "normal"]),
+        ("roio-cli bridge set --mode listen a", ["auto"]),
+        ("roio-cli bridge set auto --addr", ["--address"]),
+        ("roio-cli bridge attach auto ", ["local:robot"]),
     ]
 
     def test_bash(self):

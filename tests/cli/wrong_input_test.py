@@ -5,13 +5,16 @@ from driver import CliTest, main
 
 SEND_HELP = "; `roio-cli send --help` shows how"
 DUMP_HELP = "; `roio-cli dump --help` shows how"
+SHOW_HELP = "; `roio-cli bridge show --help` shows how"
+SET_HELP = "; `roio-cli bridge set --help` shows how"
 WORDS = ("expected to=SUBNET.NODE, from=SUBNET.NODE, urgent, normal, class=message|system|stream, "
          "ID:MASK, ID~MASK or the word or")
 
 # command line, the line on standard error
 WRONG = [
-    ("", "expected a command: send or dump; `roio-cli --help` shows how"),
-    ("snd local:x", 'unknown command "snd": expected send or dump; `roio-cli --help` shows how'),
+    ("", "expected a command: send, dump, buses or bridge; `roio-cli --help` shows how"),
+    ("snd local:x",
+     'unknown command "snd": expected send, dump, buses or bridge; `roio-cli --help` shows how'),
     ("--foo", 'unknown option "--foo"; `roio-cli --help` shows how'),
     # send: what is missing
     ("send", "expected BUS, DEST and DATA" + SEND_HELP),
@@ -24,8 +27,8 @@ WRONG = [
      'bus "local:x?bitrate=999": bitrate "999"; expected 1000..1000000 (bit/s), without leading '
      "zeros"),
     ("send can0,123:7FF 0.2",
-     'bus "can0,123:7FF": unknown kind of bus "can0,123"; expected an interface such as can0, or '
-     "local:NAME"),
+     'bus "can0,123:7FF": unknown kind of bus "can0,123"; expected an interface such as can0, '
+     "local:NAME or serial:DEVICE"),
     # send: addresses
     ("send local:x 2 01",
      'address "2": no dot; expected SUBNET.NODE, such as 0.2'),
@@ -97,6 +100,59 @@ WRONG = [
     ("dump local:x or", 'bad filter "or": expected a filter on either side of it'),
     ("dump local:x urgent 1:C00007FF",
      'no frame can satisfy these filters together; put "or" between choices'),
+    # buses
+    ("buses can0", 'expected no more words, found "can0"; `roio-cli buses --help` shows how'),
+    ("buses -v", 'unknown option "-v"; `roio-cli buses --help` shows how'),
+    # bridge
+    ("bridge",
+     "expected a command: show, set, identify or attach; `roio-cli bridge --help` shows how"),
+    ("bridge shw /dev/ttyACM0",
+     'unknown command "shw": expected show, set, identify or attach; `roio-cli bridge --help` shows '
+     "how"),
+    ("bridge --json", 'unknown option "--json"; `roio-cli bridge --help` shows how'),
+    # bridge: the port
+    ("bridge show", "expected PORT" + SHOW_HELP),
+    ("bridge show --json", "expected PORT" + SHOW_HELP),
+    ("bridge show --jsn auto", 'unknown option "--jsn"' + SHOW_HELP),
+    ("bridge show auto /dev/ttyACM0", 'expected no more words, found "/dev/ttyACM0"' + SHOW_HELP),
+    ("bridge show can0",
+     'PORT: expected a serial port such as /dev/ttyACM0, or auto, found "can0"'),
+    ("bridge show local:x",
+     'PORT: expected a serial port such as /dev/ttyACM0, or auto, found "local:x"'),
+    ("bridge show serial:",
+     'bus "serial:": no device; expected one such as /dev/ttyACM0, or auto'),
+    ("bridge show serial:/dev/ttyACM0?baud=9600",
+     'bus "serial:/dev/ttyACM0?baud=9600": baud "9600"; expected 115200, 250000, 500000, 1000000 or '
+     "2000000"),
+    ("bridge show /dev/null/none",
+     "serial:/dev/null/none: no such serial port; `ls /dev/ttyACM* /dev/ttyUSB*` lists those that "
+     "are plugged in, and serial:auto finds a bridge among them"),
+    # bridge set
+    ("bridge set auto", "expected --bitrate, --mode or --address" + SET_HELP),
+    ("bridge set auto --bitrate", "--bitrate: expected a value after it"),
+    ("bridge set auto --bitrate 999",
+     '--bitrate: expected a whole number 1000..1000000, found "999"'),
+    ("bridge set auto --bitrate 1000001",
+     '--bitrate: expected a whole number 1000..1000000, found "1000001"'),
+    ("bridge set auto --mode silent", '--mode: mode "silent": expected normal, listen or loopback'),
+    ("bridge set auto --address 0.*",
+     '--address: address "0.*": a broadcast is no address of a node\'s own; expected node 0..254'),
+    ("bridge set auto --address any",
+     '--address: address "any": no dot; expected SUBNET.NODE, such as 0.2'),
+    # bridge identify
+    ("bridge identify auto --seconds 256",
+     '--seconds: expected a whole number 0..255, found "256"'),
+    # bridge attach
+    ("bridge attach", "expected PORT; `roio-cli bridge attach --help` shows how"),
+    ("bridge attach auto",
+     "expected BUS after PORT: an interface such as vcan0, or local:NAME; `roio-cli bridge attach "
+     "--help` shows how"),
+    ("bridge attach auto local:",
+     'bus "local:": a bus name of 0 bytes; expected 1..64, such as robot'),
+    ("bridge attach auto serial:/dev/ttyACM1",
+     'BUS: expected an interface such as vcan0, or local:NAME, found "serial:/dev/ttyACM1"'),
+    ("bridge attach auto local:x local:y",
+     'expected no more words, found "local:y"; `roio-cli bridge attach --help` shows how'),
 ]
 
 
@@ -133,7 +189,8 @@ class InformationTest(CliTest):
         self.assertRegex(out, r"^roio-cli \d+\.\d+\.\d+\n$")
 
     def test_help_goes_to_standard_output_and_has_examples(self):
-        for command in ([], ["send"], ["dump"]):
+        for command in ([], ["send"], ["dump"], ["buses"], ["bridge"], ["bridge", "show"],
+                        ["bridge", "set"], ["bridge", "identify"], ["bridge", "attach"]):
             for option in ("--help", "-h"):
                 status, out, err = self.run_cli(*command, option)
                 self.assertEqual((status, err), (0, ""))

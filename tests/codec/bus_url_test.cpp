@@ -32,8 +32,6 @@ TEST(BusUrlText, IsRead) {
       {"64 bytes", "local:" + name_64, Kind::local, name_64, {}},
       {"slowest", "local:robot?bitrate=1000", Kind::local, "robot", 1000},
       {"fastest", "local:robot?bitrate=1000000", Kind::local, "robot", 1000000},
-      {"serial", "serial:/dev/ttyACM0", Kind::serial, "/dev/ttyACM0", {}},
-      {"serial with options", "serial:/dev/ttyACM0?baud=1000000", Kind::serial, "/dev/ttyACM0", {}},
   };
   for (const UrlCase& row : cases) {
     const auto parsed = parse_bus_url(row.text);
@@ -41,6 +39,50 @@ TEST(BusUrlText, IsRead) {
     EXPECT_EQ(parsed->kind, row.kind) << row.why;
     EXPECT_EQ(parsed->target, row.target) << row.why;
     EXPECT_EQ(parsed->bitrate, row.bitrate) << row.why;
+  }
+}
+
+struct SerialCase {
+  const char* why;
+  std::string text;
+  std::string target;
+  std::optional<std::uint32_t> baud;
+  std::optional<std::uint32_t> bitrate;
+  std::optional<BridgeMode> mode;
+};
+
+TEST(BusUrlText, SerialIsRead) {
+  const SerialCase cases[] = {
+      {"a device", "serial:/dev/ttyACM0", "/dev/ttyACM0", {}, {}, {}},
+      {"any bridge", "serial:auto", "auto", {}, {}, {}},
+      {"a device in this folder", "serial:tty", "tty", {}, {}, {}},
+      {"a colon in its name",
+       "serial:/dev/serial/by-path/a:b",
+       "/dev/serial/by-path/a:b",
+       {},
+       {},
+       {}},
+      {"slowest", "serial:p?baud=115200", "p", 115200, {}, {}},
+      {"faster", "serial:p?baud=250000", "p", 250000, {}, {}},
+      {"fast", "serial:p?baud=500000", "p", 500000, {}, {}},
+      {"usual", "serial:p?baud=1000000", "p", 1000000, {}, {}},
+      {"fastest", "serial:auto?baud=2000000", "auto", 2000000, {}, {}},
+      {"slowest bus", "serial:p?bitrate=1000", "p", {}, 1000, {}},
+      {"fastest bus", "serial:p?bitrate=1000000", "p", {}, 1000000, {}},
+      {"normal", "serial:p?mode=normal", "p", {}, {}, BridgeMode::normal},
+      {"listen", "serial:p?mode=listen", "p", {}, {}, BridgeMode::listen},
+      {"loopback", "serial:p?mode=loopback", "p", {}, {}, BridgeMode::loopback},
+      {"all", "serial:p?mode=listen&bitrate=125000&baud=500000", "p", 500000, 125000,
+       BridgeMode::listen},
+  };
+  for (const SerialCase& row : cases) {
+    const auto parsed = parse_bus_url(row.text);
+    ASSERT_EQ(verdict(parsed), "ok") << row.why;
+    EXPECT_EQ(parsed->kind, Kind::serial) << row.why;
+    EXPECT_EQ(parsed->target, row.target) << row.why;
+    EXPECT_EQ(parsed->baud, row.baud) << row.why;
+    EXPECT_EQ(parsed->bitrate, row.bitrate) << row.why;
+    EXPECT_EQ(parsed->mode, row.mode) << row.why;
   }
 }
 
@@ -52,16 +94,18 @@ void expect_refused(const Refusal& row) {
 
 TEST(BusUrlText, InterfaceRefusedInWords) {
   const Refusal cases[] = {
-      {"empty", "", R"("": empty; expected an interface such as can0, or local:NAME)", 0},
+      {"empty", "", R"("": empty; expected an interface such as can0, local:NAME or serial:DEVICE)",
+       0},
       {"unknown kind", "tcp:host",
-       R"("tcp:host": unknown kind of bus "tcp"; expected an interface such as can0, or local:NAME)",
+       R"("tcp:host": unknown kind of bus "tcp"; expected an interface such as can0, local:NAME or serial:DEVICE)",
        0},
       {"kinds are lower case", "LOCAL:robot",
        R"("LOCAL:robot": unknown kind of bus "LOCAL"; )"
-       R"(expected an interface such as can0, or local:NAME)",
+       R"(expected an interface such as can0, local:NAME or serial:DEVICE)",
        0},
       {"no kind", ":can0",
-       R"(":can0": unknown kind of bus ""; expected an interface such as can0, or local:NAME)", 0},
+       R"(":can0": unknown kind of bus ""; expected an interface such as can0, local:NAME or serial:DEVICE)",
+       0},
       {"no interface", "socketcan:",
        R"("socketcan:": an interface name of 0 bytes; expected 1..15, such as can0)", 10},
       {"sixteen bytes", "can456789abcdef0",
@@ -84,8 +128,6 @@ TEST(BusUrlText, InterfaceRefusedInWords) {
        R"("can0?x:y": an interface takes no options here; )"
        R"(`ip link set` sets its bit rate and the rest)",
        4},
-      {"no device", "serial:?baud=9600",
-       R"("serial:?baud=9600": no device; expected one such as /dev/ttyACM0)", 7},
   };
   for (const Refusal& row : cases) {
     expect_refused(row);
@@ -136,6 +178,50 @@ TEST(BusUrlText, LocalRefusedInWords) {
        R"("local:r?bitrate=1000&bitrate=1000": option bitrate is given twice)", 21},
       {"trailing ampersand", "local:r?bitrate=1000&",
        R"("local:r?bitrate=1000&": an option without a name; expected bitrate=BPS)", 21},
+  };
+  for (const Refusal& row : cases) {
+    expect_refused(row);
+  }
+}
+
+TEST(BusUrlText, SerialRefusedInWords) {
+  const Refusal cases[] = {
+      {"no device",
+       "serial:", R"("serial:": no device; expected one such as /dev/ttyACM0, or auto)", 7},
+      {"no device but options", "serial:?baud=115200",
+       R"("serial:?baud=115200": no device; expected one such as /dev/ttyACM0, or auto)", 7},
+      {"a zero byte, which would end it", std::string("serial:a\0b", 10),
+       R"("serial:a\x00b": "\x00" is not allowed in the name of a device)", 8},
+      {"empty options", "serial:p?",
+       R"("serial:p?": an option without a name; )"
+       R"(expected baud=RATE, bitrate=BPS or mode=MODE)",
+       9},
+      {"unknown option", "serial:p?speed=5",
+       R"("serial:p?speed=5": unknown option "speed"; )"
+       R"(expected baud=RATE, bitrate=BPS or mode=MODE)",
+       9},
+      {"no value", "serial:p?baud",
+       R"("serial:p?baud": option baud has no value; expected baud=RATE)", 9},
+      {"a rate that no bridge has", "serial:p?baud=460800",
+       R"("serial:p?baud=460800": baud "460800"; )"
+       R"(expected 115200, 250000, 500000, 1000000 or 2000000)",
+       14},
+      {"a leading zero", "serial:p?baud=0115200",
+       R"("serial:p?baud=0115200": baud "0115200"; )"
+       R"(expected 115200, 250000, 500000, 1000000 or 2000000)",
+       14},
+      {"a bus too fast", "serial:p?bitrate=1000001",
+       R"("serial:p?bitrate=1000001": bitrate "1000001"; )"
+       R"(expected 1000..1000000 (bit/s), without leading zeros)",
+       17},
+      {"an unknown mode", "serial:p?mode=silent",
+       R"("serial:p?mode=silent": mode "silent": expected normal, listen or loopback)", 14},
+      {"an empty mode",
+       "serial:p?mode=", R"("serial:p?mode=": mode "": expected normal, listen or loopback)", 14},
+      {"repeated", "serial:p?baud=115200&mode=listen&baud=115200",
+       R"("serial:p?baud=115200&mode=listen&baud=115200": option baud is given twice)", 33},
+      {"not of a serial bus", "local:r?baud=115200",
+       R"("local:r?baud=115200": unknown option "baud"; expected bitrate=BPS)", 8},
   };
   for (const Refusal& row : cases) {
     expect_refused(row);

@@ -8,6 +8,10 @@
 #include <roio/sim/network.hpp>
 #include <utility>
 
+#ifdef ROIO_IMAGES_DIR
+#include "bridged_bus.hpp"
+#endif
+
 namespace roio::test {
 namespace {
 
@@ -35,6 +39,13 @@ Venue fresh_chips() {
   return {name, [network](const OpenOptions& options) { return network->join(options); }};
 }
 
+#ifdef ROIO_IMAGES_DIR
+Venue fresh_bridges() {
+  const auto bus = std::make_shared<BridgedBus>();
+  return {bus->url(), [bus](const OpenOptions& options) { return bus->join(options); }};
+}
+#endif
+
 }  // namespace
 
 std::vector<Backend> backends() {
@@ -44,25 +55,38 @@ std::vector<Backend> backends() {
                  .arbitrates = false,
                  .paced = false,
                  .one_order = true,
+                 .refills_fast = true,
                  .flood = 80'000});
   all.push_back({.name = "local_500k",
                  .fresh = [] { return fresh_local("?bitrate=500000"); },
                  .arbitrates = true,
                  .paced = true,
                  .one_order = true,
+                 .refills_fast = true,
                  .flood = 3'000});
   all.push_back({.name = "simulated_chips",
                  .fresh = fresh_chips,
                  .arbitrates = true,
                  .paced = true,
                  .one_order = true,
+                 .refills_fast = true,
                  .flood = 5'000});
+#ifdef ROIO_IMAGES_DIR
+  all.push_back({.name = "serial",
+                 .fresh = fresh_bridges,
+                 .arbitrates = true,
+                 .paced = true,
+                 .one_order = true,
+                 .refills_fast = false,
+                 .flood = 5'000});
+#endif
   if (const char* const interface_name = std::getenv("ROIO_TEST_CAN")) {
     all.push_back({.name = "socketcan",
                    .fresh = [name = std::string(interface_name)] { return by_url(name); },
                    .arbitrates = false,
                    .paced = false,
                    .one_order = false,
+                   .refills_fast = true,
                    .flood = 250'000});
   }
   return all;

@@ -23,9 +23,12 @@ struct Backend {
   std::string name;
   /// A bus that nobody else uses; the same bus each time only where there is but one.
   std::function<Venue()> fresh;
-  bool arbitrates;        ///< Urgent frames pass normal ones that still wait.
-  bool paced;             ///< Frames take their time, so that a queue fills and send() waits.
-  bool one_order;         ///< All receivers see one and the same order.
+  bool arbitrates;  ///< Urgent frames pass normal ones that still wait.
+  bool paced;       ///< Frames take their time, so that a queue fills and send() waits.
+  bool one_order;   ///< All receivers see one and the same order.
+  /// A sender's controller has the next frame before the pause after the last one is over, but for
+  /// every other frame at most.
+  bool refills_fast;
   std::size_t flood = 0;  ///< Frames that a receiver which does not read may well be too many for.
 };
 
@@ -33,9 +36,9 @@ inline std::ostream& operator<<(std::ostream& out, const Backend& backend) {
   return out << backend.name;
 }
 
-/// The local bus and the simulated chips always; SocketCAN on the interface that the environment
-/// variable ROIO_TEST_CAN names, when it is set (that one bus is then every test's: run them one at
-/// a time).
+/// The local bus and the simulated chips always; the bridge where its image is built; SocketCAN on
+/// the interface that the environment variable ROIO_TEST_CAN names, when it is set (that one bus is
+/// then every test's: run them one at a time).
 std::vector<Backend> backends();
 /// Those of them that have a trait.
 std::vector<Backend> backends_where(bool Backend::*trait);

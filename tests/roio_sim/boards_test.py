@@ -1,9 +1,11 @@
 #!/usr/bin/env python3
 """Boards alone: what they show, and what can be done to them."""
 
+import fcntl
 import json
 import os
 import select
+import struct
 
 from sim_driver import LEONARDO, MEGA, UNO, SimTest, main
 
@@ -132,6 +134,9 @@ class CommandTest(SimTest):
         ("uno press 20", "a Uno has no pin 20"),
         ("uno analog A9 1", "a Uno has no analog input A9"),
         ("uno serial1 hello", "a Uno has no UART 1"),
+        ("uno unplug usb", '"uno unplug usb": expected nothing more, or serial, found "usb"'),
+        ("uno plug serial 2", '"uno plug serial 2": expected nothing more, found "2"'),
+        ("uno unplug serial", "uno: its serial port is no terminal; see --serial-pty"),
     ]
 
     def test_commands_that_are_not_understood(self):
@@ -156,23 +161,101 @@ class CommandTest(SimTest):
         self.assertEqual(self.run_sim("--speed", "max", "--for", "0.1", "uno=" + UNO)[0], 0)
 
 
+TCGETS2, TCSETS2 = 0x802C542A, 0x402C542B  # any rate, which Python's termios cannot
+TERMIOS2 = "IIIIB19sII"
+BOTHER, CBAUD = 0o010000, 0o010017
+
+
 class SerialPortTest(SimTest):
+    LINK = property(lambda self: self.path("ttyACM0"))
+
+    def terminal(self, path):
+        terminal = os.open(path, os.O_RDWR | os.O_NOCTTY)
+        self.addCleanup(os.close, terminal)
+        return terminal
+
+    def ask(self, terminal, line, answer):
+        """Writes a line, and reads until the answer to it has come."""
+        os.write(terminal, line + b"\n")
+        seen = b""
+        while answer not in seen:
+            self.assertNotEqual(select.select([terminal], [], [], 60)[0], [], seen)
+            seen += os.read(terminal, 100)
+
+    def set_rate(self, terminal, rate):
+        settings = list(struct.unpack(TERMIOS2, fcntl.ioctl(terminal, TCGETS2, bytes(44))))
+        settings[2] = settings[2] & ~CBAUD | BOTHER
+        settings[-2:] = rate, rate
+        fcntl.ioctl(terminal, TCSETS2, struct.pack(TERMIOS2, *settings))
+
     def test_a_terminal(self):
         sim = self.sim("--serial-pty", "a", "a:uno=" + UNO)
         line = sim.out.next()
         self.assertRegex(line, r"^a: serial port: /dev/pts/\d+\n$")
-        terminal = os.open(line.split()[-1], os.O_RDWR | os.O_NOCTTY)
-        self.addCleanup(os.close, terminal)
+        terminal = self.terminal(line.split()[-1])
         sim.wait_for("a: can: normal, 500000 bit/s")
-        os.write(terminal, b"hello\n")
-        seen = b""
-        while b"said hello\r\n" not in seen:
-            self.assertNotEqual(select.select([terminal], [], [], 60)[0], [], seen)
-            seen += os.read(terminal, 100)
+        self.ask(terminal, b"hello", b"said hello\r\n")
         sim.say("quit")
         status, out, err = sim.result()
         self.assertEqual((status, err), (0, ""))
         self.assertNotIn("serial", out)
+
+    def test_a_path_that_stays(self):
+        sim = self.sim("--serial-pty", "a:" + self.LINK, "a:uno=" + UNO)
+        self.assertEqual(sim.out.next(), f"a: serial port: {self.LINK}\n")
+        before = self.terminal(self.LINK)
+        sim.wait_for("a: can: normal, 500000 bit/s")
+        self.ask(before, b"hello", b"said hello\r\n")
+
+        sim.say("a unplug serial")
+        sim.wait_for("a: serial port: unplugged")
+        self.assertEqual(os.read(before, 100), b"")  # its end
+        self.assertFalse(os.path.lexists(self.LINK))
+        sim.say("a reset")
+        # It says "node 2" to nobody.
+        sim.say("wait 0.1", "a plug serial")
+        sim.wait_for(f"a: serial port: {self.LINK}")
+        self.ask(self.terminal(self.LINK), b"again", b"said again\r\n")
+        self.assertEqual(os.read(before, 100), b"")
+
+        sim.say("quit")
+        status, _, err = sim.result()
+        self.assertEqual((status, err),
+                         (0, "roio-sim: a: 8 bytes lost: its serial port was unplugged\n"))
+        self.assertFalse(os.path.lexists(self.LINK))
+
+    def test_the_line_rate_counts(self):
+        sim = self.sim("--serial-pty", "a:" + self.LINK, "a:uno=" + UNO)
+        terminal = self.terminal(self.LINK)
+        sim.wait_for("a: can: normal, 500000 bit/s")
+        self.set_rate(terminal, 115200)
+        self.ask(terminal, b"right", b"said right\r\n")
+        self.set_rate(terminal, 250000)
+        os.write(terminal, b"wrong\n")
+        sim.say("wait 0.2", "quit")  # they have come by then
+        status, _, err = sim.result()
+        self.assertEqual(status, 0)
+        self.assertRegex(err, r"^roio-sim: a: \d+ bytes garbled: its serial port was set to another rate "
+                              r"than the board's\n")
+
+    def test_json_lines(self):
+        status, out, err = self.run_sim(
+            "--json", "--speed", "max", "--for", "0.1", "--serial-pty", "a:" + self.LINK, "a:uno=" + UNO,
+            "--do", "wait 0.05", "--do", "a unplug serial", "--do", "a plug serial")
+        self.assertEqual((status, err), (0, ""))
+        lines = [json.loads(line) for line in out.splitlines()]
+        self.assertEqual(
+            [(line["board"], line["path"]) for line in lines if line["type"] == "serial-port"],
+            [("a", self.LINK), ("a", None), ("a", self.LINK)])
+
+    def test_a_path_that_is_taken(self):
+        with open(self.LINK, "w") as file:
+            file.write("a file")
+        self.assertEqual(
+            self.run_sim("--serial-pty", "a:" + self.LINK, "a:uno=" + UNO),
+            (2, "", f"roio-sim: --serial-pty: {self.LINK}: expected nothing there, or a link to a pseudo "
+                    "terminal: File exists\n"))
+        self.assertEqual(os.path.getsize(self.LINK), 6)
 
 
 if __name__ == "__main__":

@@ -44,11 +44,17 @@ WRONG = [
     ("--int 20 uno=UNO", "uno: a Uno has no pin 20"),
     ("--crystal 16 uno=UNO", '--crystal: expected a whole number 1000000..40000000, found "16"'),
     ("--serial-pty arm uno=UNO", '--serial-pty: no board "arm"; there is uno'),
+    ("--serial-pty /dev/ttyACM0 uno=UNO", '--serial-pty: no board "/dev/ttyACM0"; there is uno'),
+    ("--serial-pty uno: uno=UNO", '--serial-pty: expected NAME or NAME:PATH, found "uno:"'),
+    ("--serial-pty a:x --serial-pty b:x a:uno=UNO b:uno=UNO",
+     '--serial-pty: expected another path for "b:x", this one is for a'),
+    ("--serial-pty uno:no/such uno=UNO", "--serial-pty: no/such: No such file or directory"),
     # commands
     ("--do quti uno=UNO", '--do "quti": expected press, hold, release, pin, analog, serial, reset, '
                           "unplug or plug"),
     ("--do arm_reset uno=UNO", '--do: no board "arm"; there is uno'),
     ("--do uno_press_20 uno=UNO", "--do: a Uno has no pin 20"),
+    ("--do uno_plug_serial uno=UNO", "--do: uno: its serial port is no terminal; see --serial-pty"),
 ]
 
 
@@ -61,7 +67,7 @@ class WrongInputTest(SimTest):
         for command_line, expected in WRONG:
             with self.subTest(command_line):
                 # In commands, "_" is a blank.
-                words = [re.sub("_(?=reset|press|20)", " ", word) for word in command_line.split()]
+                words = [re.sub("_(?=reset|press|20|plug|serial)", " ", word) for word in command_line.split()]
                 self.assertEqual(self.run_sim(*words), (2, "", "roio-sim: " + expected + "\n"))
 
     def test_a_bus_at_another_bit_rate(self):

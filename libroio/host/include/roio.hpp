@@ -3,6 +3,7 @@
 #define ROIO_HPP
 
 #include <roio/bus.hpp>
+#include <roio/bus_list.hpp>
 #include <roio/candump_log.hpp>
 #include <roio/error.hpp>
 #include <roio/filter_mcp2515.hpp>

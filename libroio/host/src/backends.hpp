@@ -5,6 +5,7 @@
 #include <memory>
 #include <optional>
 #include <roio/bus.hpp>
+#include <roio/text.hpp>
 #include <string>
 
 namespace roio {
@@ -15,6 +16,7 @@ std::unique_ptr<Bus> open_socketcan(const std::string& interface_name, const Ope
 std::unique_ptr<Bus> open_local(const std::string& bus_name,
                                 std::optional<std::uint32_t> bitrate_bps,
                                 const OpenOptions& options);
+std::unique_ptr<Bus> open_serial(const BusUrl& url, const OpenOptions& options);
 
 }  // namespace roio
 

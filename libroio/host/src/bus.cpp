@@ -50,7 +50,7 @@ std::unique_ptr<Bus> open(std::string_view url, const OpenOptions& options) {
     case BusUrl::Kind::local:
       return open_local(parsed->target, parsed->bitrate, options);
     case BusUrl::Kind::serial:
-      break;
+      return open_serial(*parsed, options);
   }
   throw std::system_error(Errc::not_supported, std::string(url));
 }

@@ -1,5 +1,8 @@
 #include <algorithm>
+#include <array>
+#include <roio/serial_protocol.hpp>
 #include <roio/text.hpp>
+#include <span>
 
 #include "decimal.hpp"
 #include "quote.hpp"
@@ -62,7 +65,7 @@ Parsed<BusUrl> read_socketcan(Part part) {
         "an interface takes no options here; `ip link set` sets its bit rate and the rest",
         options->offset - 1};
   }
-  return BusUrl{BusUrl::Kind::socketcan, std::string(name), std::nullopt};
+  return BusUrl{BusUrl::Kind::socketcan, std::string(name)};
 }
 
 bool is_local_character(char character) {
@@ -91,22 +94,15 @@ std::optional<ParseError> check_local_name(Part part) {
   return std::nullopt;
 }
 
-std::optional<ParseError> read_local_option(Part option, BusUrl& url) {
-  const std::size_t equals = option.text.find('=');
-  const std::string_view name = option.text.substr(0, equals);
-  if (name != "bitrate") {
-    return ParseError{
-        (name.empty() ? "an option without a name" : "unknown option " + quote(name)) +
-            "; expected bitrate=BPS",
-        option.offset};
-  }
-  if (url.bitrate) {
-    return ParseError{"option bitrate is given twice", option.offset};
-  }
-  if (equals == std::string_view::npos) {
-    return ParseError{"option bitrate has no value; expected bitrate=BPS", option.offset};
-  }
-  const Part value = option.from(equals + 1);
+// One option of a kind of bus: its name, what stands for its value in errors, and what reads it.
+struct Option {
+  std::string_view name;
+  const char* value;
+  std::optional<ParseError> (*read)(Part value, BusUrl& url);
+  bool (*is_given)(const BusUrl& url);
+};
+
+std::optional<ParseError> read_bitrate(Part value, BusUrl& url) {
   const auto bitrate_bps = read_decimal(value.text);
   if (!bitrate_bps || *bitrate_bps < min_bitrate_bps || *bitrate_bps > max_bitrate_bps) {
     return ParseError{
@@ -117,33 +113,114 @@ std::optional<ParseError> read_local_option(Part option, BusUrl& url) {
   return std::nullopt;
 }
 
+std::optional<ParseError> read_baud(Part value, BusUrl& url) {
+  const auto baud = read_decimal(value.text);
+  for (std::uint8_t i = 0; baud && i < serial::rate_count; ++i) {
+    if (serial::rate_bps(i) == *baud) {
+      url.baud = baud;
+      return std::nullopt;
+    }
+  }
+  return ParseError{
+      "baud " + quote(value.text) + "; expected 115200, 250000, 500000, 1000000 or 2000000",
+      value.offset};
+}
+
+std::optional<ParseError> read_mode(Part value, BusUrl& url) {
+  const auto mode = parse_bridge_mode(value.text);
+  if (!mode) {
+    return ParseError{mode.error().message, value.offset};
+  }
+  url.mode = *mode;
+  return std::nullopt;
+}
+
+constexpr Option bitrate_option{"bitrate", "BPS", read_bitrate,
+                                [](const BusUrl& url) { return url.bitrate.has_value(); }};
+constexpr std::array local_options{bitrate_option};
+constexpr std::array serial_options{
+    Option{"baud", "RATE", read_baud, [](const BusUrl& url) { return url.baud.has_value(); }},
+    bitrate_option,
+    Option{"mode", "MODE", read_mode, [](const BusUrl& url) { return url.mode.has_value(); }}};
+
+std::string form_of(const Option& option) {
+  return std::string(option.name) + '=' + option.value;
+}
+
+/// "a=A", "a=A or b=B", "a=A, b=B or c=C".
+std::string forms_of(std::span<const Option> known) {
+  std::string forms = form_of(known.front());
+  for (std::size_t i = 1; i < known.size(); ++i) {
+    forms += (i + 1 == known.size() ? " or " : ", ") + form_of(known[i]);
+  }
+  return forms;
+}
+
+std::optional<ParseError> read_option(Part option, std::span<const Option> known, BusUrl& url) {
+  const std::size_t equals = option.text.find('=');
+  const std::string_view name = option.text.substr(0, equals);
+  const auto found = std::find_if(known.begin(), known.end(),
+                                  [name](const Option& one) { return one.name == name; });
+  if (found == known.end()) {
+    return ParseError{
+        (name.empty() ? "an option without a name" : "unknown option " + quote(name)) +
+            "; expected " + forms_of(known),
+        option.offset};
+  }
+  if (found->is_given(url)) {
+    return ParseError{"option " + std::string(name) + " is given twice", option.offset};
+  }
+  if (equals == std::string_view::npos) {
+    return ParseError{"option " + std::string(name) + " has no value; expected " + form_of(*found),
+                      option.offset};
+  }
+  return found->read(option.from(equals + 1), url);
+}
+
+std::optional<ParseError> read_options(std::optional<Part> options, std::span<const Option> known,
+                                       BusUrl& url) {
+  while (options) {
+    const std::size_t end = std::min(options->text.find('&'), options->text.size());
+    if (auto error = read_option(options->to(end), known, url)) {
+      return error;
+    }
+    options = end < options->text.size() ? std::optional(options->from(end + 1)) : std::nullopt;
+  }
+  return std::nullopt;
+}
+
 Parsed<BusUrl> read_local(Part part) {
-  auto [target, options] = split_options(part);
+  const auto [target, options] = split_options(part);
   if (auto error = check_local_name(target)) {
     return *error;
   }
-  BusUrl url{BusUrl::Kind::local, std::string(target.text), std::nullopt};
-  while (options) {
-    const std::size_t end = std::min(options->text.find('&'), options->text.size());
-    if (auto error = read_local_option(options->to(end), url)) {
-      return *error;
-    }
-    options = end < options->text.size() ? std::optional(options->from(end + 1)) : std::nullopt;
+  BusUrl url{BusUrl::Kind::local, std::string(target.text)};
+  if (auto error = read_options(options, local_options, url)) {
+    return *error;
   }
   return url;
 }
 
-// No bus of this kind can be opened yet, so its options are not looked at.
 Parsed<BusUrl> read_serial(Part part) {
-  const Part device = split_options(part).target;
+  const auto [device, options] = split_options(part);
   if (device.text.empty()) {
-    return ParseError{"no device; expected one such as /dev/ttyACM0", device.offset};
+    return ParseError{"no device; expected one such as /dev/ttyACM0, or auto", device.offset};
   }
-  return BusUrl{BusUrl::Kind::serial, std::string(device.text), std::nullopt};
+  if (device.text.find('\0') != std::string_view::npos) {
+    return ParseError{quote(device.text.substr(device.text.find('\0'), 1)) +
+                          " is not allowed in the name of a device",
+                      device.offset + device.text.find('\0')};
+  }
+  BusUrl url{BusUrl::Kind::serial, std::string(device.text)};
+  if (auto error = read_options(options, serial_options, url)) {
+    return *error;
+  }
+  return url;
 }
 
 Parsed<BusUrl> read_bus_url(Part url) {
-  constexpr const char* expected = "; expected an interface such as can0, or local:NAME";
+  constexpr const char* expected =
+      "; expected an interface such as can0, local:NAME or serial:DEVICE";
   if (url.text.empty()) {
     return ParseError{std::string("empty") + expected, 0};
   }

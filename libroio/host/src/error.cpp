@@ -33,6 +33,23 @@ class Category final : public std::error_category {
         return "no frame that a CAN bus carries";
       case Errc::not_connected:
         return "no hub answered, and none could be started, in time";
+      case Errc::no_such_port:
+        return "no such serial port; `ls /dev/ttyACM* /dev/ttyUSB*` lists those that are plugged "
+               "in, and serial:auto finds a bridge among them";
+      case Errc::not_a_port:
+        return "not a serial port; expected one such as /dev/ttyACM0";
+      case Errc::port_in_use:
+        return "another program has the port open; `fuser -v` with the port's name tells which";
+      case Errc::port_not_permitted:
+        return "no permission to open the port; join its group with `sudo usermod -aG dialout "
+               "$USER`, and log in again";
+      case Errc::no_bridge:
+        return "no bridge answered in time; is the board plugged in, and bridge_usb on it? "
+               "`scripts/flash` puts it there";
+      case Errc::several_bridges:
+        return "more than one bridge; say which one, such as serial:/dev/ttyACM0";
+      case Errc::bridge_refused:
+        return "the bridge refused";
     }
     return "unknown Roio error " + std::to_string(code);
   }

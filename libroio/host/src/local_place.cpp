@@ -22,12 +22,6 @@ constexpr int listen_backlog = 128;
   throw std::system_error(errno, std::generic_category(), what);
 }
 
-std::string folder() {
-  // Read once at open(); a program that changes its environment from another thread is on its own.
-  const char* chosen = std::getenv("ROIO_RUNTIME_DIR");
-  return chosen != nullptr && *chosen != '\0' ? chosen : "/tmp/roio-" + std::to_string(::geteuid());
-}
-
 void make_private_folder(const std::string& path) {
   if (::mkdir(path.c_str(), S_IRWXU) != 0 && errno != EEXIST) {
     fail(path);
@@ -74,6 +68,12 @@ const sockaddr* generic(const sockaddr_un& address) {
 }
 
 }  // namespace
+
+std::string folder() {
+  // Read once at open(); a program that changes its environment from another thread is on its own.
+  const char* chosen = std::getenv("ROIO_RUNTIME_DIR");
+  return chosen != nullptr && *chosen != '\0' ? chosen : "/tmp/roio-" + std::to_string(::geteuid());
+}
 
 HubSeat::HubSeat(UniqueFd lock, UniqueFd listener, std::string lock_path, std::string socket_path)
     : lock_(std::move(lock)),

@@ -28,6 +28,9 @@ class HubSeat {
   std::string socket_path_;
 };
 
+/// The folder of this user's local buses; it need not be there yet.
+std::string folder();
+
 /// Where a local bus is in the file system: NAME.sock and NAME.lock in a folder for this user
 /// alone, $ROIO_RUNTIME_DIR or else /tmp/roio-UID. Not below XDG_RUNTIME_DIR: a service and a shell
 /// of one user may differ in that, and would meet on two buses without a word.

@@ -106,6 +106,15 @@ Parsed<Priority> parse_priority(std::string_view text) {
   return in_context("priority", text, ParseError{"expected urgent or normal", 0});
 }
 
+Parsed<BridgeMode> parse_bridge_mode(std::string_view text) {
+  for (const BridgeMode mode : {BridgeMode::normal, BridgeMode::listen, BridgeMode::loopback}) {
+    if (text == to_string(mode)) {
+      return mode;
+    }
+  }
+  return in_context("mode", text, ParseError{"expected normal, listen or loopback", 0});
+}
+
 Parsed<MessageClass> parse_class(std::string_view text) {
   for (const MessageClass message_class : {MessageClass::message, MessageClass::system,
                                            MessageClass::stream, MessageClass::reserved}) {

@@ -13,12 +13,22 @@ _roio_cli_buses() {
   done
 }
 
-# How many words before the current one are arguments, not options or their values.
+# Serial ports where a bridge may be; opening them to see would restart what else is there.
+_roio_cli_ports() {
+  local port
+  echo auto
+  for port in /dev/ttyACM* /dev/ttyUSB*; do
+    [ -e "$port" ] && echo "$port"
+  done
+}
+
+# How many words, from the one given to the current one, are arguments, not options or their values.
 _roio_cli_arguments_before() {
   local index count=0
-  for ((index = 2; index < COMP_CWORD; ++index)); do
+  for ((index = $1; index < COMP_CWORD; ++index)); do
     case ${COMP_WORDS[index]} in
       --from | --class | --count | --interval | --timeout | -n | -T | -t) ((++index)) ;;
+      --bitrate | --mode | --address | --seconds) ((++index)) ;;
       -?*) ;;
       *) ((++count)) ;;
     esac
@@ -29,25 +39,48 @@ _roio_cli_arguments_before() {
 _roio_cli_words() {
   local command=${COMP_WORDS[1]} previous=${COMP_WORDS[COMP_CWORD - 1]}
   if [ "$COMP_CWORD" -eq 1 ]; then
-    echo send dump --help --version
+    echo send dump buses bridge --help --version
     return
   fi
   case $previous in
     --class) echo message system stream; return ;;
+    --mode) echo normal listen loopback; return ;;
+    --address) echo none; return ;;
     -t) echo a d z; return ;;
-    --from | --count | --interval | --timeout | -n | -T) return ;;
+    --from | --count | --interval | --timeout | -n | -T | --bitrate | --seconds) return ;;
   esac
   case $command:$current in
     send:-*) echo --from --urgent --class --count --interval --timeout --dec --help; return ;;
     dump:-*) echo -n -T -t --log --json --no-foreign --errors --verbose --help; return ;;
+    buses:-*) echo --json --help; return ;;
     send:* | dump:*) ;;
+    bridge:*) _roio_cli_bridge_words; return ;;
     *) return ;;
   esac
-  if [ "$(_roio_cli_arguments_before)" -eq 0 ]; then
+  if [ "$(_roio_cli_arguments_before 2)" -eq 0 ]; then
     _roio_cli_buses
+    _roio_cli_ports | sed s/^/serial:/
   elif [ "$command" = dump ]; then
     echo to= from= urgent normal class=message class=system class=stream or
   fi
+}
+
+_roio_cli_bridge_words() {
+  local action=${COMP_WORDS[2]}
+  if [ "$COMP_CWORD" -eq 2 ]; then
+    echo show set identify attach --help
+    return
+  fi
+  case $action:$current in
+    show:-*) echo --json --help; return ;;
+    set:-*) echo --bitrate --mode --address --help; return ;;
+    identify:-*) echo --seconds --help; return ;;
+    attach:-*) echo --verbose --help; return ;;
+  esac
+  case $action:$(_roio_cli_arguments_before 3) in
+    show:0 | set:0 | identify:0 | attach:0) _roio_cli_ports ;;
+    attach:1) _roio_cli_buses ;;
+  esac
 }
 
 _roio_cli() {

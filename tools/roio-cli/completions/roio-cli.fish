@@ -15,17 +15,25 @@ function __roio_cli_buses
     end
 end
 
-# Whether the argument being written is the first after the command: the bus.
-function __roio_cli_needs_bus
+# Serial ports where a bridge may be; opening them to see would restart what else is there.
+function __roio_cli_ports
+    echo auto
+    for port in /dev/ttyACM* /dev/ttyUSB*
+        echo $port
+    end
+end
+
+# Whether the argument being written is the N-th from 0, from the M-th word of the line on.
+function __roio_cli_is_argument
     set -l words (commandline -opc)
     set -l count 0
     set -l skip 0
-    for word in $words[3..-1]
+    for word in $words[$argv[2]..-1]
         if test $skip = 1
             set skip 0
         else
             switch $word
-                case --from --class --count --interval --timeout -n -T -t
+                case --from --class --count --interval --timeout -n -T -t --bitrate --mode --address --seconds
                     set skip 1
                 case '-?*'
                 case '*'
@@ -33,15 +41,33 @@ function __roio_cli_needs_bus
             end
         end
     end
-    test $count = 0
+    test $count = $argv[1]
+end
+
+# Whether it is the bus, the first after the command.
+function __roio_cli_needs_bus
+    __roio_cli_is_argument 0 3
+end
+
+# Whether `bridge` is the command and its own command is not there yet, or is the one given.
+function __roio_cli_bridge
+    set -l words (commandline -opc)
+    test "$words[2]" = bridge; and test "$words[3]" = "$argv[1]"
+end
+
+# Whether it is the N-th from 0 after the one given of bridge's commands.
+function __roio_cli_bridge_argument
+    __roio_cli_bridge $argv[1]; and __roio_cli_is_argument $argv[2] 4
 end
 
 complete -c roio-cli -f
 complete -c roio-cli -n __fish_use_subcommand -a send -d 'Send a message, or lines of them'
 complete -c roio-cli -n __fish_use_subcommand -a dump -d 'Show what is on a bus'
+complete -c roio-cli -n __fish_use_subcommand -a buses -d 'List the buses that can be opened'
+complete -c roio-cli -n __fish_use_subcommand -a bridge -d 'Show, set and use a bridge on a serial port'
 complete -c roio-cli -n __fish_use_subcommand -l version -d 'Print the version and end'
 complete -c roio-cli -s h -l help -d 'Print help and end'
-complete -c roio-cli -n '__fish_seen_subcommand_from send dump; and __roio_cli_needs_bus' -a '(__roio_cli_buses)'
+complete -c roio-cli -n '__fish_seen_subcommand_from send dump; and __roio_cli_needs_bus' -a '(__roio_cli_buses) serial:(__roio_cli_ports)'
 
 complete -c roio-cli -n '__fish_seen_subcommand_from send' -l from -x -d 'Source address'
 complete -c roio-cli -n '__fish_seen_subcommand_from send' -l urgent -d 'Ahead of normal messages'
@@ -60,3 +86,20 @@ complete -c roio-cli -n '__fish_seen_subcommand_from dump' -l no-foreign -d 'Hid
 complete -c roio-cli -n '__fish_seen_subcommand_from dump' -l errors -d 'Show error reports'
 complete -c roio-cli -n '__fish_seen_subcommand_from dump' -s v -l verbose -d 'Say when listening, and counts'
 complete -c roio-cli -n '__fish_seen_subcommand_from dump; and not __roio_cli_needs_bus' -a 'to= from= urgent normal class=message class=system class=stream or'
+
+complete -c roio-cli -n '__fish_seen_subcommand_from buses' -l json -d 'JSON lines'
+
+complete -c roio-cli -n '__roio_cli_bridge ""' -a show -d 'What a bridge is and has counted'
+complete -c roio-cli -n '__roio_cli_bridge ""' -a set -d 'Bit rate, mode and address'
+complete -c roio-cli -n '__roio_cli_bridge ""' -a identify -d 'Have its LED blink'
+complete -c roio-cli -n '__roio_cli_bridge ""' -a attach -d 'Make it and another bus one bus'
+for command in show set identify attach
+    complete -c roio-cli -n "__roio_cli_bridge_argument $command 0" -a '(__roio_cli_ports)'
+end
+complete -c roio-cli -n '__roio_cli_bridge_argument attach 1' -a '(__roio_cli_buses)'
+complete -c roio-cli -n '__roio_cli_bridge show' -l json -d 'One JSON object'
+complete -c roio-cli -n '__roio_cli_bridge set' -l bitrate -x -d 'Of the CAN bus'
+complete -c roio-cli -n '__roio_cli_bridge set' -l mode -x -a 'normal listen loopback' -d 'Of the controller'
+complete -c roio-cli -n '__roio_cli_bridge set' -l address -x -a none -d 'That it answers to as a node'
+complete -c roio-cli -n '__roio_cli_bridge identify' -l seconds -x -d 'How long; 0 ends it'
+complete -c roio-cli -n '__roio_cli_bridge attach' -s v -l verbose -d 'Say the counts once a second'

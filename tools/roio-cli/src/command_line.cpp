@@ -3,9 +3,7 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <limits>
-#include <memory>
 #include <roio/text.hpp>
 #include <roio/version.hpp>
 #include <span>
@@ -13,7 +11,8 @@
 #include <utility>
 #include <vector>
 
-#include "exit_status.hpp"
+#include "bridge_words.hpp"
+#include "words.hpp"
 
 namespace roio::cli {
 namespace {
@@ -22,11 +21,15 @@ constexpr const char* main_examples = R"(Examples:
   roio-cli dump local:robot &               listen on a bus that needs nothing
   roio-cli send local:robot 0.2 5A2D00      three bytes to node 2 of subnet 0
   roio-cli dump can0 to=0.2 urgent          urgent messages to that node, on SocketCAN
+  roio-cli dump serial:auto                 through the bridge on a serial port
+  roio-cli buses                            what there is to be opened
+  roio-cli bridge attach /dev/ttyACM0 vcan0 a bridge, for every Linux program
 
-BUS is a CAN interface (can0) or local:NAME, a bus between the programs of one
-user on this machine; local:NAME?bitrate=500000 has the pace of a real one.
+BUS is a CAN interface (can0), serial:DEVICE, a bridge on a serial port, or
+local:NAME, a bus between the programs of one user on this machine;
+local:NAME?bitrate=500000 has the pace of a real one.
 Exit status: 0 done, 1 failed, 2 not a right command line, 128+N ended by signal N.
-More: man roio-cli, roio-cli send --help, roio-cli dump --help)";
+More: man roio-cli, roio-cli send --help, roio-cli bridge --help)";
 
 constexpr const char* send_examples = R"(Examples:
   roio-cli send can0 0.2 5A2D00              three bytes to node 2 of subnet 0
@@ -58,37 +61,14 @@ Examples:
   roio-cli dump --log can0 > drive.log       as candump -L, for canplayer and send
   roio-cli dump --json can0 | jq .data       one JSON object a line)";
 
-[[noreturn]] void refuse(const std::string& command, const std::string& what) {
-  const std::string name = command.empty() ? "roio-cli" : "roio-cli " + command;
-  throw UsageError(what + "; `" + name + " --help` shows how");
-}
+constexpr const char* buses_examples = R"(Examples:
+  roio-cli buses
+  roio-cli buses --json | jq -r 'select(.kind == "serial").bus'
 
-std::uint64_t parse_number(const std::string& option, const std::string& text,
-                           std::uint64_t smallest, std::uint64_t largest) {
-  std::uint64_t value = 0;
-  const char* last = text.data() + text.size();
-  const auto [end, error] = std::from_chars(text.data(), last, value);
-  if (error != std::errc() || end != last || value < smallest || value > largest) {
-    throw UsageError(option + ": expected a whole number " + std::to_string(smallest) + ".." +
-                     std::to_string(largest) + ", found " + quote(text));
-  }
-  return value;
-}
-
-constexpr std::uint64_t longest_ms = 24ULL * 60 * 60 * 1000;
-
-std::chrono::milliseconds parse_ms(const std::string& option, const std::string& text,
-                                   std::uint64_t smallest) {
-  return std::chrono::milliseconds(parse_number(option, text, smallest, longest_ms));
-}
-
-template <typename T>
-T value_or_refuse(const Parsed<T>& parsed, const char* option = "") {
-  if (!parsed) {
-    throw UsageError(option + parsed.error().message);
-  }
-  return *parsed;
-}
+CAN interfaces, the local buses that some program is on, and bridges. To find
+those it opens the serial ports that an Arduino may be at and no other program
+has; that restarts most Arduinos. ROIO_SERIAL_PORTS=/dev/ttyUSB3 has it look
+there alone. A port without a bridge is listed with the reason.)";
 
 Bytes parse_decimal(std::span<const std::string> words) {
   Bytes bytes;
@@ -115,14 +95,6 @@ Bytes parse_data(std::span<const std::string> words, bool decimal) {
   return words.empty() ? Bytes{} : value_or_refuse(parse_hex(words.front()));
 }
 
-CLI::Option* without_type(CLI::Option* option) {
-  return option->type_name("");
-}
-
-CLI::Option* flag(CLI::App& app, const char* name, const char* description) {
-  return app.add_flag(name)->description(description);
-}
-
 /// The words of `send`, as they come.
 struct SendWords {
   std::string bus, destination, from_text;
@@ -138,7 +110,7 @@ struct SendWords {
 };
 
 void declare(CLI::App& app, SendWords& words) {
-  without_type(app.add_option("BUS", words.bus, "can0, or local:NAME"));
+  without_type(app.add_option("BUS", words.bus, "can0, local:NAME or serial:DEVICE"));
   without_type(
       app.add_option("DEST", words.destination,
                      "SUBNET.NODE, or SUBNET.* for everybody there; - reads standard input"));
@@ -194,11 +166,6 @@ Message parse_message(const SendWords& words, Address source) {
   return message;
 }
 
-std::string parse_bus(const std::string& text) {
-  static_cast<void>(value_or_refuse(parse_bus_url(text)));
-  return text;
-}
-
 SendOptions parse_send(const SendWords& words) {
   constexpr std::uint64_t most = std::numeric_limits<std::uint32_t>::max();
   if (words.bus.empty()) {
@@ -241,7 +208,7 @@ struct DumpWords {
 };
 
 void declare(CLI::App& app, DumpWords& words) {
-  without_type(app.add_option("BUS", words.bus, "can0, or local:NAME"));
+  without_type(app.add_option("BUS", words.bus, "can0, local:NAME or serial:DEVICE"));
   without_type(app.add_option("FILTER", words.filters, "Which frames; see below"));
   words.count = app.add_option("-n", words.count_text, "End after N frames");
   words.count->type_name("N");
@@ -297,43 +264,11 @@ DumpOptions parse_dump(const DumpWords& words) {
   return options;
 }
 
-/// Words that nothing was expected for: an option misspelt, one argument too many, an unknown
-/// command. The required ones are looked at afterwards, so the misspelling is what is named.
-void refuse_rest(const CLI::App& app, const std::string& command) {
-  const std::vector<std::string> rest = app.remaining();
-  if (rest.empty()) {
-    return;
-  }
-  if (rest.front().starts_with('-')) {
-    refuse(command, "unknown option " + quote(rest.front()));
-  }
-  refuse(command, "unknown command " + quote(rest.front()) + ": expected send or dump");
-}
-
-/// CLI11's help, but for the first line, in which it would name every option's type.
-class HelpFormatter final : public CLI::Formatter {
- public:
-  explicit HelpFormatter(std::string usage) : usage_(std::move(usage)) { column_width(24); }
-  std::string make_usage(const CLI::App* /*app*/, std::string /*name*/) const override {
-    return "Usage: roio-cli " + usage_ + '\n';
-  }
-
- private:
-  std::string usage_;
-};
-
-void prepare(CLI::App& app, const char* usage, const char* examples) {
-  app.allow_extras();
-  app.footer(examples);
-  app.formatter(std::make_shared<HelpFormatter>(usage));
-  app.set_help_flag("-h,--help", "Print this help and end");
-}
-
 }  // namespace
 
 Command parse_command_line(int argc, const char* const* argv) {
-  CLI::App app("Sends and shows Roio messages on a CAN bus.");
-  prepare(app, "send|dump [OPTIONS] BUS ...", main_examples);
+  CLI::App app("Sends and shows Roio messages on a CAN bus, and looks after bridges.");
+  prepare(app, "send|dump|buses|bridge [OPTIONS] ...", main_examples);
   bool version = false;
   app.add_flag("--version", version, "Print the version and end");
   app.require_subcommand(0, 1);
@@ -345,6 +280,10 @@ Command parse_command_line(int argc, const char* const* argv) {
   DumpWords dump_words;
   declare(send_app, send_words);
   declare(dump_app, dump_words);
+  CLI::App& buses_app = *app.add_subcommand("buses", "List the buses that can be opened");
+  prepare(buses_app, "buses [OPTIONS]", buses_examples);
+  const CLI::Option* buses_json = flag(buses_app, "--json", "JSON lines");
+  const BridgeWords bridge_words(app);
 
   try {
     app.parse(argc, argv);
@@ -368,8 +307,16 @@ Command parse_command_line(int argc, const char* const* argv) {
     refuse_rest(dump_app, "dump");
     return parse_dump(dump_words);
   }
-  refuse_rest(app, "");
-  refuse("", "expected a command: send or dump");
+  if (buses_app.parsed()) {
+    refuse_rest(buses_app, "buses");
+    return BusesOptions{buses_json->count() > 0};
+  }
+  if (bridge_words.parsed()) {
+    return bridge_words.parse();
+  }
+  constexpr const char* commands = "send, dump, buses or bridge";
+  refuse_rest(app, "", commands);
+  refuse("", std::string("expected a command: ") + commands);
 }
 
 }  // namespace roio::cli

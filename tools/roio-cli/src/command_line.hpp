@@ -5,6 +5,9 @@
 #include <string>
 #include <variant>
 
+#include "attach.hpp"
+#include "bridge.hpp"
+#include "buses.hpp"
 #include "dump.hpp"
 #include "send.hpp"
 
@@ -15,7 +18,8 @@ struct Information {
   std::string text;
 };
 
-using Command = std::variant<Information, SendOptions, DumpOptions>;
+using Command = std::variant<Information, SendOptions, DumpOptions, BusesOptions, BridgeShowOptions,
+                             BridgeSetOptions, BridgeIdentifyOptions, BridgeAttachOptions>;
 
 /// @throws UsageError: what was wrong with the words, and what was expected.
 Command parse_command_line(int argc, const char* const* argv);

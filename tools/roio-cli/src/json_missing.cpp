@@ -1,3 +1,4 @@
+#include "bridge_report.hpp"
 #include "exit_status.hpp"
 #include "json_lines.hpp"
 #include "record_format.hpp"
@@ -7,6 +8,10 @@ namespace {
 
 constexpr const char* no_json = "this roio-cli was built without JSON (ROIO_BUILD_JSON)";
 
+[[noreturn]] void refuse_json() {
+  throw UsageError(std::string("--json: ") + no_json);
+}
+
 }  // namespace
 
 Parsed<JsonMessage> parse_json_line(std::string_view /*line*/) {
@@ -14,7 +19,15 @@ Parsed<JsonMessage> parse_json_line(std::string_view /*line*/) {
 }
 
 std::unique_ptr<RecordFormat> json_format() {
-  throw UsageError(std::string("--json: ") + no_json);
+  refuse_json();
+}
+
+void append_json(Buffer& /*out*/, const BridgeReport& /*report*/) {
+  refuse_json();
+}
+
+void append_json(Buffer& /*out*/, const BusReport& /*report*/) {
+  refuse_json();
 }
 
 }  // namespace roio::cli

@@ -17,6 +17,7 @@ int run(const Information& information) {
   flush(out);
   return exit_success;
 }
+// What runs until a signal, or for as long as a bus takes, ends cleanly by one.
 int run(const SendOptions& options) {
   const Interrupt interrupt;
   return send(options);
@@ -24,6 +25,23 @@ int run(const SendOptions& options) {
 int run(const DumpOptions& options) {
   const Interrupt interrupt;
   return dump(options);
+}
+int run(const BridgeAttachOptions& options) {
+  const Interrupt interrupt;
+  return bridge_attach(options);
+}
+// What is over in moments is just ended.
+int run(const BusesOptions& options) {
+  return buses(options);
+}
+int run(const BridgeShowOptions& options) {
+  return bridge_show(options);
+}
+int run(const BridgeSetOptions& options) {
+  return bridge_set(options);
+}
+int run(const BridgeIdentifyOptions& options) {
+  return bridge_identify(options);
 }
 
 }  // namespace

@@ -37,7 +37,7 @@ complete -c roio-sim -l rate -x -a '125000 250000 500000 1000000' -d 'Of the sim
 complete -c roio-sim -l crystal -x -d 'Of the MCP2515: [NAME:]HZ'
 complete -c roio-sim -l cs -x -d 'Where chip select is: [NAME:]PIN'
 complete -c roio-sim -l int -x -a none -d 'Where INT is: [NAME:]PIN or none'
-complete -c roio-sim -l serial-pty -x -d 'Its serial port becomes a terminal'
+complete -c roio-sim -l serial-pty -x -d 'Its serial port becomes a terminal: NAME[:PATH]'
 complete -c roio-sim -l do -x -d 'Do this first'
 complete -c roio-sim -l speed -x -a max -d 'Times real time'
 complete -c roio-sim -l for -x -d 'End after so much simulated time, s'

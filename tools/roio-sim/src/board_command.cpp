@@ -107,6 +107,14 @@ Parsed<Action> parse_serial(std::string_view verb, std::string_view& rest) {
   return Action(std::move(serial));
 }
 
+Parsed<Action> parse_plug(bool in, std::string_view& rest) {
+  const std::string_view cable = take_word(rest);
+  if (!cable.empty() && cable != "serial") {
+    return expected("nothing more, or serial", cable);
+  }
+  return Action(Plug{in, cable.empty() ? Cable::chip : Cable::terminal});
+}
+
 Parsed<Action> parse_board_action(std::string_view verb, std::string_view& rest) {
   if (verb == "press" || verb == "hold" || verb == "release") {
     return parse_button(verb, rest);
@@ -124,7 +132,7 @@ Parsed<Action> parse_board_action(std::string_view verb, std::string_view& rest)
     return Action(Reset{});
   }
   if (verb == "plug" || verb == "unplug") {
-    return Action(Plug{verb == "plug"});
+    return parse_plug(verb == "plug", rest);
   }
   return expected("press, hold, release, pin, analog, serial, reset, unplug or plug", verb);
 }
@@ -169,6 +177,7 @@ const char* const command_help =
     "NAME serial TEXT          a line to its serial port (serial1: to UART 1)\n"
     "NAME reset                the reset button\n"
     "NAME unplug, NAME plug    the cable to the CAN chip\n"
+    "NAME unplug serial        its terminal (--serial-pty), until NAME plug serial\n"
     "wait SECONDS              what follows comes so much later\n"
     "quit\n";
 

@@ -1,10 +1,14 @@
 /// The commands that roio-sim takes while it runs, one a line. Pure functions.
 ///
-///   sensors press 4          a button to ground, for 0.1 s        sensors hold 4, sensors release
-///   4 sensors pin 7 high       high, low or open                    sensors analog A0 0.5
-///   (or 2.5V) arm serial hello         the text and a line end, to the first UART (serial1 TEXT:
-///   to UART 1) arm reset                the reset button                     arm unplug, arm plug:
-///   the chip's cable wait 0.5                 what follows is done so much simulated time later
+///   sensors press 4         a button to ground, for 0.1 s
+///   sensors hold 4          the same, until: sensors release 4
+///   sensors pin 7 high      high, low or open
+///   sensors analog A0 0.5   or volts: 2.5V
+///   arm serial hello        the text and a line end, to the first UART (serial1 TEXT: to UART 1)
+///   arm reset               the reset button
+///   arm unplug              the chip's cable, until: arm plug
+///   arm unplug serial       its terminal, until: arm plug serial
+///   wait 0.5                what follows is done so much simulated time later
 ///   quit, help
 #ifndef ROIO_SIM_TOOL_BOARD_COMMAND_HPP
 #define ROIO_SIM_TOOL_BOARD_COMMAND_HPP
@@ -40,8 +44,10 @@ struct Serial {
   std::string text;         ///< Without a line end.
 };
 struct Reset {};
+enum class Cable : std::uint8_t { chip, terminal };
 struct Plug {
   bool in = true;
+  Cable cable = Cable::chip;
 };
 struct Wait {
   sim::SimTime time;

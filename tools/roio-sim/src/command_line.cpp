@@ -27,6 +27,8 @@ Examples:
   roio-cli send local:robot 0.2 5A2D00          in another terminal: moves the servos
   roio-sim --for 10 --speed max --json arm:uno=ServoController.elf
   roio-sim --do 'sensors analog A0 0.5' sensors:uno=SensorBoard.elf
+  roio-sim --serial-pty usb:/tmp/ttyACM0 usb:uno=bridge_usb.elf arm:uno=ServoController.elf
+  roio-cli send serial:/tmp/ttyACM0 0.2 5A2D00  in another terminal: through the bridge
 
 Commands, a line each, on standard input (and with --do):
 )";
@@ -63,8 +65,8 @@ void declare(CLI::App& app, Words& words) {
   of_boards("--crystal", words.crystals, "[NAME:]HZ", "Of the MCP2515 (default 16000000)");
   of_boards("--cs", words.chip_selects, "[NAME:]PIN", "Where chip select is (default 10)");
   of_boards("--int", words.interrupts, "[NAME:]PIN|none", "Where INT is (default 2)");
-  of_boards("--serial-pty", words.terminals, "NAME",
-            "Its serial port becomes a terminal, whose path is printed");
+  of_boards("--serial-pty", words.terminals, "NAME[:PATH]",
+            "Its serial port becomes a terminal, at PATH (else its path is printed)");
   of_boards("--do", words.commands, "COMMAND", "Do this first; may be given several times");
   app.add_option("--speed", words.speed, "Times real time (default 1); max: as fast as it goes")
       ->type_name("X|max");
@@ -143,6 +145,25 @@ void for_named(std::vector<BoardWish>& boards, const std::string& option, const 
   }
 }
 
+// "NAME" or "NAME:PATH"
+void add_terminal(std::vector<BoardWish>& boards, const std::string& word) {
+  const std::size_t colon = word.find(':');
+  const std::string path = colon == std::string::npos ? "" : word.substr(colon + 1);
+  if (colon != std::string::npos && path.empty()) {
+    throw UsageError("--serial-pty: expected NAME or NAME:PATH, found " + quote(word));
+  }
+  for (const BoardWish& board : boards) {
+    if (!path.empty() && board.terminal_link == path) {
+      throw UsageError("--serial-pty: expected another path for " + quote(word) +
+                       ", this one is for " + board.name);
+    }
+  }
+  for_named(boards, "--serial-pty", word.substr(0, colon), [&](BoardWish& board) {
+    board.has_terminal = true;
+    board.terminal_link = path;
+  });
+}
+
 void apply_to_boards(const Words& words, std::vector<BoardWish>& boards) {
   constexpr std::uint32_t largest_pin = 99;  // the board refuses what it does not have
   for (const std::string& word : words.crystals) {
@@ -173,7 +194,7 @@ void apply_to_boards(const Words& words, std::vector<BoardWish>& boards) {
               [&](BoardWish& board) { board.options.interrupt_pin = pin; });
   }
   for (const std::string& word : words.terminals) {
-    for_named(boards, "--serial-pty", word, [](BoardWish& board) { board.serial_pty = true; });
+    add_terminal(boards, word);
   }
 }
 

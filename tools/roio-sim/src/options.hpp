@@ -17,7 +17,8 @@ struct BoardWish {
   sim::BoardKind kind = sim::BoardKind::uno;
   std::string elf;
   sim::BoardOptions options;
-  bool serial_pty = false;
+  bool has_terminal = false;
+  std::string terminal_link;  ///< Where it is to be found; empty: only under its own name.
 };
 
 struct Options {

@@ -6,6 +6,7 @@
 #include <set>
 #include <span>
 #include <stdexcept>
+#include <system_error>
 
 #include "record_format.hpp"
 
@@ -96,13 +97,21 @@ void Panel::watch_pins(const BoardWish& wish) {
 void Panel::watch_serial(const BoardWish& wish) {
   const int last_uart = wish.kind == sim::BoardKind::mega ? 3 : first_uart_;
   for (int uart = first_uart_; uart <= last_uart; ++uart) {
-    if (uart == first_uart_ && wish.serial_pty) {
-      terminal_ = std::make_unique<sim::SerialPty>(bus_, board_, uart);
-      report_.terminal(name(), terminal_->path());
+    if (uart == first_uart_ && wish.has_terminal) {
+      terminal_link_ = wish.terminal_link;
+      terminal_ = std::make_unique<sim::SerialPty>(bus_, board_, uart,
+                                                   sim::SerialPtyOptions{.link = terminal_link_});
+      show_terminal();
     } else {
       board_.on_serial(uart, [this, uart](std::uint8_t byte) { serial_byte(uart, byte); });
     }
   }
+}
+
+// Under the name that programs are to use.
+void Panel::show_terminal() {
+  const bool has_link = terminal_->is_plugged() && !terminal_link_.empty();
+  report_.terminal(bus_.now(), name(), has_link ? terminal_link_ : terminal_->path());
 }
 
 // --- what it shows -------------------------------------------------------------------------------
@@ -190,7 +199,19 @@ Panel::CanState Panel::can_state() {
   return {mode_name(chip.mode()), takes_part ? chip.bitrate_bps() : 0};
 }
 
+// Not of its own frames, off the bus: a program that measures the crystal lets them fall.
+void Panel::count_overflows() {
+  const std::uint64_t overflowed = board_.chip().events().overflowed;
+  const bool is_in_loopback = board_.chip().mode() == sim::Mcp2515Chip::OperationMode::loopback;
+  if (!is_in_loopback && !was_in_loopback_) {
+    overflows_ += overflowed - overflows_seen_;
+  }
+  overflows_seen_ = overflowed;
+  was_in_loopback_ = is_in_loopback;
+}
+
 void Panel::look_at_chip() {
+  count_overflows();
   const CanState state = can_state();
   if (state != state_) {
     state_ = state;
@@ -215,13 +236,12 @@ void Panel::finish() {
       end_line(uart, line);
     }
   }
-  if (const auto overflowed = board_.chip().events().overflowed; overflowed > 0) {
-    note(name() + ": " + cli::count_of(overflowed, "frame") +
+  if (overflows_ > 0) {
+    note(name() + ": " + cli::count_of(overflows_, "frame") +
          " lost: the chip's buffers were full");
   }
-  if (terminal_ && terminal_->lost() > 0) {
-    note(name() + ": " + cli::count_of(terminal_->lost(), "byte") +
-         " lost: nobody read its serial port");
+  if (terminal_) {
+    tell_lost_bytes();
   }
   for (const auto* violations : {&board_.violations(), &board_.chip().violations()}) {
     if (!violations->empty()) {
@@ -229,6 +249,17 @@ void Panel::finish() {
            " that the hardware does not put up with; the first: " + violations->front().what);
     }
   }
+}
+
+void Panel::tell_lost_bytes() {
+  const auto tell = [this](std::uint64_t count, const char* what) {
+    if (count > 0) {
+      note(name() + ": " + cli::count_of(count, "byte") + what);
+    }
+  };
+  tell(terminal_->lost(), " lost: nobody read its serial port");
+  tell(terminal_->unheard(), " lost: its serial port was unplugged");
+  tell(terminal_->garbled(), " garbled: its serial port was set to another rate than the board's");
 }
 
 // --- what can be done to it ----------------------------------------------------------------------
@@ -250,6 +281,9 @@ void Panel::check(const Action& action) const {
     static_cast<void>(board_.analog_pin(analog->channel));
   } else if (const auto* const serial = std::get_if<Serial>(&action)) {
     static_cast<void>(board_.serial_waiting(serial->uart.value_or(first_uart_)));
+  } else if (const auto* const plug = std::get_if<Plug>(&action);
+             plug != nullptr && plug->cable == Cable::terminal && !terminal_) {
+    throw std::invalid_argument(name() + ": its serial port is no terminal; see --serial-pty");
   }
 }
 
@@ -287,7 +321,27 @@ void Panel::do_action(const Reset& /*reset*/) {
 }
 
 void Panel::do_action(const Plug& plug) {
-  board_.set_chip_fault(plug.in ? sim::SpiWire::Fault::none : sim::SpiWire::Fault::stuck_high);
+  if (plug.cable == Cable::terminal) {
+    plug_terminal(plug.in);
+  } else {
+    board_.set_chip_fault(plug.in ? sim::SpiWire::Fault::none : sim::SpiWire::Fault::stuck_high);
+  }
+}
+
+void Panel::plug_terminal(bool in) {
+  if (in == terminal_->is_plugged()) {
+    return;
+  }
+  try {
+    if (in) {
+      terminal_->plug();
+    } else {
+      terminal_->unplug();
+    }
+  } catch (const std::system_error& error) {
+    throw std::invalid_argument(name() + ": " + error.what());
+  }
+  show_terminal();
 }
 
 }  // namespace roio::sim_tool

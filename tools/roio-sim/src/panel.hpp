@@ -75,6 +75,10 @@ class Panel {
   void serial_byte(int uart, std::uint8_t byte);
   void end_line(int uart, Line& line);
   void look_at_chip();
+  void count_overflows();
+  void show_terminal();
+  void plug_terminal(bool in);
+  void tell_lost_bytes();
   [[nodiscard]] CanState can_state();
   [[nodiscard]] int number_of(const PinName& pin) const;
 
@@ -88,7 +92,11 @@ class Panel {
   CanState state_;        // as it is
   CanState state_shown_;  // as it was reported
   sim::SimTime state_since_{0};
+  bool was_in_loopback_ = false;
+  std::uint64_t overflows_seen_ = 0;
+  std::uint64_t overflows_ = 0;
   std::unique_ptr<sim::SerialPty> terminal_;
+  std::string terminal_link_;
 };
 
 }  // namespace roio::sim_tool

@@ -52,8 +52,8 @@ class TextReport final : public Report {
       line("{}: can: {}\n", board, state);
     }
   }
-  void terminal(const std::string& board, const std::string& path) override {
-    line("{}: serial port: {}\n", board, path);
+  void terminal(sim::SimTime /*time*/, const std::string& board, const std::string& path) override {
+    line("{}: serial port: {}\n", board, path.empty() ? "unplugged" : path);
   }
   void summary(const Summary& summary) override {
     line("bus: {:.3f} s simulated, {}, load {:.1f} %, {}\n", seconds(summary.time),
@@ -92,8 +92,9 @@ class JsonReport final : public Report {
            std::uint32_t bitrate_bps) override {
     line({{"type", "can"}, {"board", board}, {"state", state}, {"bitrate", bitrate_bps}}, time);
   }
-  void terminal(const std::string& board, const std::string& path) override {
-    line({{"type", "serial-port"}, {"board", board}, {"path", path}}, sim::SimTime(0));
+  void terminal(sim::SimTime time, const std::string& board, const std::string& path) override {
+    line({{"type", "serial-port"}, {"board", board}, {"path", path.empty() ? Json() : Json(path)}},
+         time);
   }
   void summary(const Summary& summary) override {
     Json json{{"type", "summary"},

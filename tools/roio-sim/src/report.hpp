@@ -42,7 +42,8 @@ class Report {
   /// @param state a mode of the chip, error-passive or bus-off.
   virtual void can(sim::SimTime time, const std::string& board, const std::string& state,
                    std::uint32_t bitrate_bps) = 0;
-  virtual void terminal(const std::string& board, const std::string& path) = 0;
+  /// @param path empty: it has none any more.
+  virtual void terminal(sim::SimTime time, const std::string& board, const std::string& path) = 0;
   virtual void summary(const Summary& summary) = 0;
 
   /// Lines that are not written yet.

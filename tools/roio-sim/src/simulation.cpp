@@ -163,8 +163,11 @@ class Simulation {
   void add_board(const BoardWish& wish) {
     try {
       panels_.push_back(std::make_unique<Panel>(bus_, wish, options_.bitrate_bps, *report_));
-    } catch (const std::system_error&) {
-      throw;  // no terminal to be had
+    } catch (const std::system_error& error) {
+      if (wish.terminal_link.empty()) {
+        throw;  // no terminal to be had
+      }
+      throw cli::UsageError(std::string("--serial-pty: ") + error.what());
     } catch (const std::runtime_error& error) {
       throw cli::UsageError(error.what());
     } catch (const std::invalid_argument& error) {

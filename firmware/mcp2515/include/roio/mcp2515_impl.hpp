@@ -547,7 +547,9 @@ ROIO_MCP2515_MEMBER(bool)::load(const Mcp2515Frame& frame, uint8_t token) {
 ROIO_MCP2515_MEMBER(void)::settle(uint8_t quick) {
   const uint8_t ended = static_cast<uint8_t>(pending_ & ~quick);
   pending_ &= quick;
-  end(ended, TxOutcome::sent);
+  if (!Traits::reports_outcomes || ended != 0) {
+    end(ended, TxOutcome::sent);
+  }
   if (requests_.aborting() && pending_ == 0) {
     modify_register(Register::canctrl, mcp2515::Control::abort_all, 0);
     requests_.set_aborting(false);
@@ -564,8 +566,9 @@ ROIO_MCP2515_MEMBER(void)::end(uint8_t requests, TxOutcome outcome) {
     }
     return;
   }
-  for (uint8_t buffer = urgent_buffer; buffer != 0; buffer >>= 1) {
-    if ((requests & QuickStatus::txreq(buffer)) != 0) {
+  uint8_t request = QuickStatus::txreq(urgent_buffer);
+  for (uint8_t buffer = urgent_buffer; buffer != 0; buffer >>= 1, request >>= 2) {
+    if ((requests & request) != 0) {
       report(requests_.token_of(buffer),
              outcome == TxOutcome::unknown ? outcome : outcome_of(buffer));
     }
@@ -630,7 +633,9 @@ ROIO_MCP2515_MEMBER(void)::tend(bool looked) {
   if (must_look && !looked && running_) {
     look();
   }
-  pump();
+  if (!tx_queue_.empty()) {
+    pump();
+  }
   if (check && running_) {
     calls_ = 0;
     check_chip();

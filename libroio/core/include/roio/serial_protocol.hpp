@@ -85,7 +85,8 @@ constexpr uint8_t hello_length = control_head + 5;
 constexpr uint8_t welcome_length = control_head + 29;
 constexpr uint8_t status_length = control_head + 11;
 constexpr uint8_t counter_count = 11;
-constexpr uint8_t counters_length = control_head + 4 * counter_count;
+constexpr uint8_t counters_at_once = 4;
+constexpr uint8_t counters_length = control_head + 1 + 4 * counters_at_once;  ///< At most.
 constexpr uint8_t results_length = control_head + 6;
 constexpr uint8_t reply_length = control_head + 2;
 

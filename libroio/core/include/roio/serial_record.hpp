@@ -77,32 +77,38 @@ class RecordWriter {
   uint8_t at_;
 };
 
-/// Writes a body that is there already: the same record, faster, since the compiler sees the loop.
+/// Writes a body that is there already: the same record, faster, for all that changes with each
+/// byte can stay in registers. The sink is best a small value, too.
 /// @param length min_body..max_body.
 /// @return how many bytes the record has.
 template <typename Sink>
-__attribute__((always_inline)) inline uint8_t write_record(Sink& sink, uint32_t session,
+__attribute__((always_inline)) inline uint8_t write_record(Sink sink, uint32_t session,
                                                            const uint8_t* body, uint8_t length) {
   Crc32c check(session);
   uint8_t zero = 0;
   uint8_t at = 1;
-  for (uint8_t left = static_cast<uint8_t>(length + check_length); left != 0; --left) {
+  uint8_t left = static_cast<uint8_t>(length + check_length);
+  for (;;) {
     uint8_t byte = 0;
     if (left > check_length) {
       byte = *body++;
       check.add(byte);
-    } else {
+    } else if (left != 0) {
       byte = check.take_byte();
     }
     if (byte != 0) {
       sink.put(at, byte);
     } else {
+      // A zero is known by its distance to the next one; the last is the delimiter.
       sink.put(zero, static_cast<uint8_t>(at - zero));
       zero = at;
+      if (left == 0) {
+        break;
+      }
     }
     ++at;
+    --left;
   }
-  sink.put(zero, static_cast<uint8_t>(at - zero));
   sink.put(at, delimiter);
   return static_cast<uint8_t>(at + 1U);
 }
@@ -122,27 +128,59 @@ class RecordReader {
   RecordReader() : length_(0), block_(0), state_(State::empty), buffer_() {}
 
   Event take(uint8_t byte) {
-    if (byte == delimiter) {
-      return end();
+    uint8_t count = 1;
+    return take(&byte, count);
+  }
+
+  /// Takes bytes up to the end of a record, that one included.
+  /// @param count how many there are; becomes how many were taken: all, unless something has ended.
+  Event take(const uint8_t* bytes, uint8_t& count) {
+    // What changes with each byte is kept out of memory: at 1 Mbit/s one comes every 160 cycles.
+    uint8_t length = length_;
+    uint8_t block = block_;
+    uint8_t left = count;
+    Event event = Event::none;
+    if (left != 0 && state_ == State::ended) {
+      length = 0;
+      block = 0;
+      state_ = State::empty;
     }
-    switch (state_) {
-      case State::ended:
-        length_ = 0;
-        block_ = 0;
+    while (left != 0) {
+      uint8_t byte = *bytes++;
+      --left;
+      if (byte == delimiter) {
+        length_ = length;
+        block_ = block;
+        event = end();
+        if (event != Event::none) {
+          break;
+        }
+        length = 0;
+        block = 0;
         state_ = State::empty;
-        break;
-      case State::broken:
-        return Event::none;
-      default:
-        break;
+        continue;
+      }
+      // A block's first byte says how far its zero is; the first of all has none before it.
+      if (block != 0) {
+        --block;
+      } else {
+        block = static_cast<uint8_t>(byte - 1U);
+        byte = 0;
+        if (state_ == State::empty) {
+          state_ = State::inside;
+          continue;
+        }
+      }
+      if (length == sizeof buffer_) {
+        state_ = State::broken;
+        length = 0;
+      }
+      buffer_[length++] = byte;
     }
-    if (block_ == 0) {
-      begin_block(byte);
-    } else {
-      --block_;
-      store(byte);
-    }
-    return Event::none;
+    count = static_cast<uint8_t>(count - left);
+    length_ = length;
+    block_ = block;
+    return event;
   }
 
   /// Of the record that take() has just told of; until the next byte.
@@ -165,27 +203,9 @@ class RecordReader {
   enum class State : uint8_t {
     empty,   // nothing since a delimiter
     inside,  // of a record
-    broken,  // of something that cannot be one
+    broken,  // of something that is too long to be one; the buffer holds nonsense
     ended,   // the buffer is the reader's user's
   };
-
-  // A block's first byte says how far its zero is; the first of all has none before it.
-  void begin_block(uint8_t code) {
-    if (state_ == State::inside) {
-      store(0);
-    } else {
-      state_ = State::inside;
-    }
-    block_ = static_cast<uint8_t>(code - 1U);
-  }
-
-  void store(uint8_t byte) {
-    if (length_ == sizeof buffer_) {
-      state_ = State::broken;
-      return;
-    }
-    buffer_[length_++] = byte;
-  }
 
   Event end() {
     const State state = state_;

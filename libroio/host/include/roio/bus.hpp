@@ -2,7 +2,7 @@
 ///
 ///   auto bus = roio::open("can0");                       // SocketCAN
 ///   auto bus = roio::open("local:robot?bitrate=500000"); // processes of one machine, no kernel
-///   CAN
+///   CAN auto bus = roio::open("serial:/dev/ttyACM0");        // a bridge: a board with an MCP2515
 ///
 /// Threads: one thread may send while another receives, and any thread may call cancel(), close(),
 /// state() and statistics(). Two threads must not receive (or send) at the same time.
@@ -29,7 +29,7 @@ using Timeout = std::chrono::nanoseconds;
 inline constexpr Timeout no_wait{0};
 inline constexpr Timeout forever = Timeout::max();
 
-/// Wall-clock time, as the kernel or the hub stamped it.
+/// Wall-clock time, as the kernel, the hub or the bridge stamped it.
 using Timestamp = std::chrono::sys_time<std::chrono::nanoseconds>;
 
 enum class Result : std::uint8_t {
@@ -48,7 +48,8 @@ struct [[nodiscard]] Transfer {
 
 struct Received {
   Frame frame;
-  Timestamp time;  ///< When the frame was on the bus, by the kernel's or the hub's clock.
+  Timestamp time;  ///< When the frame was on the bus, by the kernel's, the hub's or the bridge's
+                   ///< clock (that told by this computer's).
   std::uint64_t lost_before;  ///< Frames lost to this receiver between the one before and this one.
 };
 
@@ -58,8 +59,8 @@ enum class BusState : std::uint8_t {
   warning,  ///< An error counter above 96.
   passive,  ///< Error-passive: a counter above 127.
   bus_off,  ///< Bus-off: the controller takes no part until it is restarted.
-  down,     ///< The interface is administratively down.
-  absent,   ///< The interface or the hub is gone; it is looked for at every call.
+  down,     ///< The interface is administratively down; the bridge has no working controller.
+  absent,   ///< The interface, the hub or the bridge is gone; it is looked for all the time.
 };
 const char* to_string(BusState state) noexcept;
 
@@ -72,10 +73,11 @@ struct Statistics {
   std::uint64_t send_timeouts = 0;  ///< send() calls that gave up at their deadline.
   std::uint64_t error_frames = 0;   ///< Error reports of the controller.
   std::uint64_t bus_offs = 0;       ///< Times the controller went bus-off.
-  std::uint64_t outages = 0;        ///< Times the interface went down or the hub went away.
-  std::uint64_t resent = 0;         ///< Frames sent again to a new hub (local bus).
+  std::uint64_t outages = 0;        ///< Times the interface went down, the hub or the bridge away.
+  std::uint64_t resent = 0;  ///< Frames sent again to a new hub, or to a bridge that missed them.
   std::uint64_t duplicates = 0;  ///< Frames come a second time over a new hub, not delivered again.
-  std::uint64_t unsent = 0;      ///< Frames accepted by send() and lost on close() or with a hub.
+  std::uint64_t unsent = 0;      ///< Frames accepted by send() and lost on close(), or with a hub
+                                 ///< or a bridge; such that a bridge gave up, or cannot tell of.
   std::uint64_t overruns = 0;    ///< Reports of a controller that it lost frames, how many unsaid.
 };
 
@@ -85,7 +87,8 @@ struct OpenOptions {
   bool error_frames = false;
   /// Receive nothing until set_filters(): for programs that only send.
   bool send_only = false;
-  /// How long open() may wait for the bus (a hub that is just starting or leaving).
+  /// How long open() may wait for the bus (a hub that is just starting or leaving, a board that is
+  /// reset when its port is opened).
   Timeout open_timeout = std::chrono::seconds(5);
 };
 
@@ -148,7 +151,10 @@ class Bus {
 
 /// Opens a bus.
 /// @param url "can0" or "socketcan:can0"; "local:NAME" or "local:NAME?bitrate=BPS", NAME of 1..64
-///        letters, digits, '.', '_', '-', BPS 1000..1000000 (none: as fast as it goes).
+///        letters, digits, '.', '_', '-', BPS 1000..1000000 (none: as fast as it goes);
+///        "serial:DEVICE" or "serial:auto" (the one bridge that there is, see find_bridges()), with
+///        "?baud=RATE" (at most; 115200, 250000, 500000, 1000000, 2000000; none: 1000000),
+///        "&bitrate=BPS" and "&mode=normal|listen|loopback" (none: as the bridge has them).
 /// @throws std::system_error with an Errc that says what is wrong with it and what was expected.
 std::unique_ptr<Bus> open(std::string_view url, const OpenOptions& options = {});
 

@@ -14,11 +14,18 @@ enum class Errc {
   no_can_support,       ///< The kernel has no CAN; a local bus needs none.
   not_supported,        ///< This build has no such kind of bus.
   bitrate_mismatch,     ///< The local bus already runs at another bit rate.
-  version_mismatch,     ///< The local bus is run by another, incompatible version.
+  version_mismatch,     ///< The local bus, or the bridge, is run by an incompatible version.
   not_permitted,        ///< The local bus, or its folder, is not this user's alone.
   too_many_filters,     ///< More filters than the backend takes.
   bad_frame,            ///< A frame that no bus carries: id, length or kind out of range.
   not_connected,        ///< The local bus could not be reached or taken over in time.
+  no_such_port,         ///< No serial port of that name.
+  not_a_port,           ///< It exists and is no serial port.
+  port_in_use,          ///< Another program has the serial port.
+  port_not_permitted,   ///< This user may not open the serial port.
+  no_bridge,            ///< No bridge answered in time, or none was found.
+  several_bridges,      ///< serial:auto, and there is more than one.
+  bridge_refused,       ///< The bridge answered that it cannot do that.
 };
 
 const std::error_category& error_category() noexcept;

@@ -12,6 +12,7 @@
 #include <utility>
 #include <variant>
 
+#include <roio/bridge.hpp>
 #include <roio/frame.hpp>
 #include <roio/header.hpp>
 
@@ -71,13 +72,18 @@ const char* to_string(MessageClass message_class) noexcept;
 Parsed<Priority> parse_priority(std::string_view text);
 Parsed<MessageClass> parse_class(std::string_view text);
 
-/// What open() takes. Of "serial:DEVICE?..." the options are not looked at yet, as no such bus can
-/// be opened.
+/// "normal", "listen" and "loopback".
+Parsed<BridgeMode> parse_bridge_mode(std::string_view text);
+
+/// What open() takes.
 struct BusUrl {
   enum class Kind : std::uint8_t { socketcan, local, serial };
   Kind kind = Kind::socketcan;
-  std::string target;                    ///< Interface, bus name or device.
-  std::optional<std::uint32_t> bitrate;  ///< Of a local bus, bit/s, 1,000..1,000,000.
+  std::string target;  ///< Interface, bus name or device; "auto" is whichever has a bridge.
+  std::optional<std::uint32_t>
+      bitrate{};                        ///< Of a local bus or a bridge's, 1,000..1,000,000 bit/s.
+  std::optional<std::uint32_t> baud{};  ///< Of a serial line, at most; bit/s.
+  std::optional<BridgeMode> mode{};     ///< Of a bridge.
 };
 Parsed<BusUrl> parse_bus_url(std::string_view text);
 

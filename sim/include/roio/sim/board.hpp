@@ -142,6 +142,8 @@ class Board {
   [[nodiscard]] const SerialCounters& serial_counters(int uart) const;
   /// As programmed: 16 MHz / (16 or 8) / (UBRR + 1).
   [[nodiscard]] double serial_bitrate_bps(int uart) const;
+  /// Of the byte that on_serial() told last: the program may have set another since. 0: of none.
+  [[nodiscard]] double serial_sent_bitrate_bps(int uart) const;
 
  private:
   class Machine;

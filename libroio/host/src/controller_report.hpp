@@ -1,11 +1,11 @@
-#ifndef ROIO_SIM_NETWORK_REPORTS_HPP
-#define ROIO_SIM_NETWORK_REPORTS_HPP
+#ifndef ROIO_CONTROLLER_REPORT_HPP
+#define ROIO_CONTROLLER_REPORT_HPP
 
 #include <cstdint>
 #include <roio/bus.hpp>
 #include <roio/frame.hpp>
 
-namespace roio::sim {
+namespace roio {
 
 /// What a controller's host knows of it.
 struct ControllerView {
@@ -25,6 +25,6 @@ bool is_news(const ControllerView& before, const ControllerView& now);
 /// Source: <linux/can/error.h>.
 Frame error_report(const ControllerView& before, const ControllerView& now);
 
-}  // namespace roio::sim
+}  // namespace roio
 
 #endif

@@ -1,6 +1,6 @@
-#include "network_reports.hpp"
+#include "controller_report.hpp"
 
-namespace roio::sim {
+namespace roio {
 namespace {
 
 // The classes of <linux/can/error.h>, in the identifier.
@@ -89,4 +89,4 @@ Frame error_report(const ControllerView& before, const ControllerView& now) {
           {0, report.controller, 0, 0, 0, 0, now.transmit_errors, now.receive_errors}};
 }
 
-}  // namespace roio::sim
+}  // namespace roio

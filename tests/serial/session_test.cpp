@@ -1,0 +1,464 @@
+// Sessions: how they come about, what they set up, and how they end.
+#include <algorithm>
+
+#include "line.hpp"
+
+namespace roio::test {
+namespace {
+
+constexpr std::uint32_t doc_session = 0x52AB0149;
+
+TEST(SerialSession, SaysHelloAsTheDocumentHasItEvery50Milliseconds) {
+  SerialSession session({}, [] { return doc_session; });
+  const Bytes expected{0x00,  // ends what was before
+                       0x02, 0xE1, 0x0A, 0x01, 0x52, 0xAB, 0x01,
+                       0x49, 0x87, 0x42, 0x7C, 0x36, 0x00};
+  session.begin(1s);
+  for (Time now = 1s; now < 2s; now += 50ms) {
+    session.on_time(now - 1ns);
+    EXPECT_EQ(Bytes(session.output().begin(), session.output().end()), expected);
+    session.consume_output(session.output().size());
+    EXPECT_EQ(session.deadline(), now + 50ms);
+    session.on_time(session.deadline());
+  }
+  EXPECT_EQ(session.line_rate_bps(), 115'200U);
+}
+
+// Its program-page command is 0x64, and it erases before it has looked at what follows.
+TEST(SerialSession, SaysNothingThatABootLoaderTakesForACommand) {
+  std::vector<std::uint32_t> nonces{0, 0x64, 0x00006400, 0x64640000, doc_session};
+  SerialSession session({}, [&nonces] {
+    const std::uint32_t first = nonces.front();
+    nonces.erase(nonces.begin());
+    return first;
+  });
+  session.begin(1s);
+  EXPECT_TRUE(nonces.empty()) << "those before are not taken";
+  EXPECT_EQ(std::count(session.output().begin(), session.output().end(), 0x64), 0);
+}
+
+TEST(SerialSession, OpensAtTheRateWanted) {
+  Line line;
+  line.open();
+  EXPECT_EQ(line.session.line_rate_bps(), 1'000'000U);
+  EXPECT_EQ(line.bridge.rate_bps, 1'000'000U);
+  EXPECT_EQ(line.bridge.count_of(serial::Down::bus), 0) << "it is as it is to be";
+  EXPECT_EQ(line.bridge.count_of(serial::Down::filter), 0) << "it may stay as it is";
+  const BridgeInfo info = line.session.info();
+  EXPECT_EQ(to_string(info.firmware), "0.1.0");
+  EXPECT_EQ(info.board, BridgeBoard::uno);
+  EXPECT_EQ(info.osc_khz, 16'000);
+  EXPECT_EQ(info.bitrate_bps, 500'000U);
+  EXPECT_EQ(info.mode, BridgeMode::normal);
+  ASSERT_TRUE(info.address);
+  EXPECT_EQ(info.address->node, 254);
+  EXPECT_TRUE(info.interrupt_wired);
+  EXPECT_TRUE(info.line_rate_matters);
+  EXPECT_EQ(info.line_rate_bps, 1'000'000U);
+  EXPECT_EQ(info.state, BridgeState::active);
+  EXPECT_EQ(info.transmit_errors, 5);
+  EXPECT_EQ(info.receive_errors, 7);
+  EXPECT_EQ(line.session.counter_reports(), 1U);
+  EXPECT_EQ(line.session.bridge_counters().dropped, 100U);
+  EXPECT_EQ(line.session.bridge_counters().overruns, 110U);
+  EXPECT_EQ(line.session.counters().damaged, 0U);
+}
+
+struct RateCase {
+  const char* why;
+  std::uint32_t wanted;
+  std::uint8_t rates;
+  std::uint8_t flags;
+  std::uint32_t expected;
+};
+
+TEST(SerialSession, TakesTheBestRateThatBothHave) {
+  const RateCase cases[] = {
+      {"the base rate needs no asking", 115'200, 0x1F, 1, 115'200},
+      {"slow", 250'000, 0x1F, 1, 250'000},
+      {"fastest", 2'000'000, 0x1F, 1, 2'000'000},
+      {"the bridge has less", 2'000'000, 0x07, 1, 500'000},
+      {"the bridge has a gap there", 1'000'000, 0x13, 1, 250'000},
+      {"the bridge has none but the base rate", 1'000'000, 0x01, 1, 115'200},
+      {"a board whose USB is its own", 1'000'000, 0x1F, 0, 115'200},
+  };
+  for (const RateCase& row : cases) {
+    Line line({.line_rate_bps = row.wanted});
+    line.bridge.rates = row.rates;
+    line.bridge.flags = row.flags;
+    line.open();
+    EXPECT_EQ(line.session.line_rate_bps(), row.expected) << row.why;
+    EXPECT_EQ(line.bridge.rate_bps, row.expected) << row.why;
+  }
+}
+
+TEST(SerialSession, OpensThroughGarbage) {
+  Line line;
+  for (int i = 0; i < 500; ++i) {
+    line.bridge.out.push_back({static_cast<std::uint8_t>(i * 37), 115'200});
+  }
+  line.open();
+  EXPECT_EQ(line.session.counters().damaged, 0U) << "before a session, anything may come";
+}
+
+TEST(SerialSession, IsSilentAboutABridgeThatStartsLate) {
+  Line line;
+  line.bridge.is_deaf = true;
+  line.session.begin(line.now);
+  line.run_for(2s);
+  EXPECT_EQ(line.session.phase(), Phase::calling);
+  line.bridge.is_deaf = false;
+  EXPECT_TRUE(line.run_until([&] { return line.session.phase() == Phase::ready; }, 200ms));
+}
+
+TEST(SerialSession, OpensNoneWithAnotherVersion) {
+  Line line;
+  line.bridge.version = 2;
+  line.session.begin(line.now);
+  line.run_for(300ms);
+  EXPECT_EQ(line.session.phase(), Phase::calling);
+  ASSERT_TRUE(line.session.other_version());
+  EXPECT_EQ(line.session.other_version()->protocol, 2);
+  ASSERT_TRUE(line.session.other_version()->firmware);
+  EXPECT_EQ(to_string(*line.session.other_version()->firmware), "0.1.0");
+}
+
+TEST(SerialSession, TellsTheBridgeItsSettings) {
+  Line line({.bitrate_bps = 125'000,
+             .mode = BridgeMode::listen,
+             .address = Address{3, 200},
+             .rules = std::vector<SerialRule>{{0x90004000, 0xE3FFE000}, {1, 2}}});
+  line.open();
+  EXPECT_EQ(line.bridge.bitrate_bps, 125'000U);
+  EXPECT_EQ(line.bridge.mode, 1);
+  ASSERT_EQ(line.bridge.rules.size(), 2U);
+  EXPECT_EQ(line.bridge.rules[0].match, 0x90004000U);
+  EXPECT_EQ(line.bridge.rules[0].mask, 0xE3FFE000U);
+  EXPECT_EQ(line.bridge.rules[1].match, 1U);
+  EXPECT_EQ(line.bridge.count_of(serial::Down::address), 1);
+  EXPECT_EQ(line.session.info().bitrate_bps, 125'000U);
+  EXPECT_EQ(line.session.info().mode, BridgeMode::listen);
+
+  line.bridge.reset();
+  ASSERT_TRUE(line.run_until([&] { return line.session.counters().sessions == 2; }));
+  ASSERT_TRUE(line.run_until([&] { return line.session.phase() == Phase::ready; }));
+  EXPECT_EQ(line.bridge.bitrate_bps, 125'000U) << "and again after a reset";
+  EXPECT_EQ(line.bridge.rules.size(), 2U);
+}
+
+TEST(SerialSession, RestartsNoControllerThatIsAsItShouldBe) {
+  Line line({.bitrate_bps = 500'000, .mode = BridgeMode::normal});
+  line.open();
+  EXPECT_EQ(line.bridge.count_of(serial::Down::bus), 0);
+}
+
+TEST(SerialSession, UsesNoBridgeThatRefusesItsSettings) {
+  Line line({.bitrate_bps = 800'000});
+  line.bridge.verdict = [](serial::Down operation) -> std::uint8_t {
+    return operation == serial::Down::bus ? 8 : 0;
+  };
+  line.session.begin(line.now);
+  ASSERT_TRUE(line.run_until([&] { return line.session.refusal().has_value(); }));
+  EXPECT_EQ(*line.session.refusal(), Status::bad_timing);
+  EXPECT_EQ(line.session.phase(), Phase::calling);
+  const int hellos = line.bridge.hellos;
+  line.run_for(900ms);
+  EXPECT_EQ(line.bridge.hellos, hellos) << "it is left in peace for a while";
+  line.bridge.verdict = nullptr;
+  EXPECT_TRUE(line.run_until([&] { return line.session.phase() == Phase::ready; }, 2s));
+  EXPECT_FALSE(line.session.refusal());
+}
+
+TEST(SerialSession, TakesABridgeWithoutAController) {
+  Line line({.bitrate_bps = 250'000});
+  line.bridge.state = 4;
+  line.bridge.verdict = [](serial::Down operation) -> std::uint8_t {
+    return operation == serial::Down::bus ? 6 : 0;
+  };
+  line.open();
+  EXPECT_EQ(line.session.info().state, BridgeState::no_controller);
+}
+
+TEST(SerialSession, PollsTenTimesASecond) {
+  Line line;
+  line.open();
+  const int before = line.bridge.count_of(serial::Down::poll);
+  line.run_for(10s);
+  EXPECT_NEAR(line.bridge.count_of(serial::Down::poll) - before, 100, 1);
+  EXPECT_NEAR(static_cast<double>(line.session.counter_reports()), 11, 1) << "once a second";
+  EXPECT_EQ(line.session.counters().sessions, 1U);
+}
+
+TEST(SerialSession, AsksForCountersWhenTheStateChanges) {
+  Line line;
+  line.open();
+  line.run_for(300ms);
+  const std::uint64_t before = line.session.counter_reports();
+  line.bridge.state = 3;
+  EXPECT_TRUE(line.run_until([&] { return line.session.counter_reports() == before + 1; }, 210ms));
+  EXPECT_EQ(line.session.info().state, BridgeState::bus_off);
+}
+
+TEST(SerialSession, IsBackWithinASecondOfAReset) {
+  Line line;
+  line.open();
+  // In the middle of a record.
+  line.bridge.send_status(line.now);
+  line.bridge.out.resize(line.bridge.out.size() / 2);
+  line.run_for(100us);
+  line.bridge.reset();
+  EXPECT_TRUE(line.run_until([&] { return line.session.phase() == Phase::calling; }, 510ms));
+  EXPECT_EQ(line.session.line_rate_bps(), 115'200U);
+  EXPECT_EQ(line.session.info().state, BridgeState::absent);
+  EXPECT_TRUE(line.run_until([&] { return line.session.phase() == Phase::ready; }, 200ms));
+  EXPECT_EQ(line.session.counters().sessions, 2U);
+  EXPECT_EQ(line.session.line_rate_bps(), 1'000'000U);
+}
+
+TEST(SerialSession, IsBackWithinASecondOfALineThatWasDead) {
+  Line line;
+  line.open();
+  bool dead = true;
+  line.up_fault = [&dead](std::uint8_t byte) { return dead ? std::nullopt : std::optional(byte); };
+  line.down_fault = line.up_fault;
+  line.run_for(700ms);
+  dead = false;
+  EXPECT_TRUE(line.run_until([&] { return line.session.phase() == Phase::ready; }, 1s));
+}
+
+TEST(SerialSession, EndsAndBeginsWithThePort) {
+  Line line;
+  line.open();
+  line.session.end();
+  EXPECT_EQ(line.session.phase(), Phase::closed);
+  EXPECT_EQ(line.session.deadline(), Time::max());
+  EXPECT_TRUE(line.session.output().empty());
+  line.run_for(1s);
+  EXPECT_EQ(line.session.phase(), Phase::closed);
+  line.open();
+}
+
+// --- the line rate -------------------------------------------------------------------------------
+
+/// Spoils one byte in so many.
+std::function<std::optional<std::uint8_t>(std::uint8_t)> spoiling(const std::function<bool()>& when,
+                                                                  int one_in) {
+  return [when, one_in, count = 0](std::uint8_t byte) mutable {
+    const bool spoil = when() && ++count % one_in == 0;
+    return std::optional(static_cast<std::uint8_t>(byte ^ (spoil ? 0x10 : 0)));
+  };
+}
+
+TEST(SerialRate, IsLowerWhenTheTrialFails) {
+  Line line;
+  line.up_fault = spoiling([&] { return line.bridge.rate_bps >= 500'000; }, 20);
+  line.open();
+  EXPECT_EQ(line.session.line_rate_bps(), 250'000U);
+  EXPECT_EQ(line.session.counters().failed_trials, 2U);
+}
+
+TEST(SerialRate, IsLowerWhenNothingComesBack) {
+  Line line({.line_rate_bps = 2'000'000});
+  line.down_fault = [&line](std::uint8_t byte) {
+    return line.bridge.rate_bps == 2'000'000 ? std::nullopt : std::optional(byte);
+  };
+  line.open();
+  EXPECT_EQ(line.session.line_rate_bps(), 1'000'000U);
+  EXPECT_EQ(line.session.counters().failed_trials, 1U);
+}
+
+TEST(SerialRate, StandsTheTrialWhenTheBridgeHadNoRoomForAnEcho) {
+  Line line;
+  line.bridge.may_send = losing(serial::Up::echoed, 2);
+  line.open();
+  EXPECT_EQ(line.session.line_rate_bps(), 1'000'000U);
+  EXPECT_EQ(line.session.counters().failed_trials, 0U);
+}
+
+TEST(SerialRate, IsTriedAgainWhenTheReplyWasLost) {
+  Line line;
+  line.bridge.may_send = losing(serial::Up::reply);
+  line.open();
+  EXPECT_EQ(line.session.line_rate_bps(), 1'000'000U);
+  EXPECT_EQ(line.session.counters().sessions, 2U);
+}
+
+TEST(SerialRate, IsGivenUpWhenItIsNeverAnswered) {
+  Line line;
+  line.bridge.verdict = [&](serial::Down operation) -> std::optional<std::uint8_t> {
+    const bool fast = operation == serial::Down::speed && line.bridge.heard.back().at(4) != 0x07;
+    return fast ? std::nullopt : std::optional<std::uint8_t>(0);
+  };
+  line.open();
+  EXPECT_EQ(line.session.line_rate_bps(), 500'000U) << "07A120";
+}
+
+TEST(SerialRate, IsAnotherOneWhenTheBridgeRefuses) {
+  Line line;
+  line.bridge.verdict = [&](serial::Down operation) -> std::uint8_t {
+    return operation == serial::Down::speed && line.bridge.heard.back().at(4) == 0x0F ? 1 : 0;
+  };
+  line.open();
+  EXPECT_EQ(line.session.line_rate_bps(), 500'000U);
+  EXPECT_EQ(line.session.counters().sessions, 1U);
+}
+
+TEST(SerialRate, GoesDownWhenRecordsAreDamagedOften) {
+  Line line;
+  line.open();
+  line.up_fault = spoiling([&] { return line.bridge.rate_bps >= 1'000'000; }, 90);
+  std::uint32_t sent = 0;
+  line.at_each_step = [&, next = line.now]() mutable {
+    if (line.now >= next) {
+      line.bridge.hear(numbered(sent++), line.now);
+      next += 1ms;
+    }
+  };
+  ASSERT_TRUE(line.run_until([&] { return line.session.line_rate_bps() == 500'000; }));
+  ASSERT_TRUE(line.run_until([&] { return line.session.phase() == Phase::ready; }));
+  EXPECT_EQ(line.session.counters().step_downs, 1U);
+  EXPECT_EQ(line.session.counters().sessions, 1U) << "without an outage";
+  line.run_for(2s);
+  EXPECT_EQ(line.session.line_rate_bps(), 500'000U);
+}
+
+TEST(SerialRate, StaysWhenRecordsAreDamagedNowAndThen) {
+  Line line;
+  line.open();
+  line.up_fault = spoiling([] { return true; }, 400);  // one record in 20
+  std::uint32_t sent = 0;
+  line.at_each_step = [&, next = line.now]() mutable {
+    if (line.now >= next) {
+      line.bridge.hear(numbered(sent++), line.now);
+      next += 1ms;
+    }
+  };
+  line.run_for(5s);
+  EXPECT_GT(line.session.counters().damaged, 100U);
+  EXPECT_EQ(line.session.line_rate_bps(), 1'000'000U);
+}
+
+// --- requests ------------------------------------------------------------------------------------
+
+TEST(SerialRequests, AreAnsweredAndKept) {
+  Line line;
+  line.open();
+  auto reply = line.reply_of([&](SerialSession::Done done) {
+    line.session.set_bus(125'000, BridgeMode::loopback, line.now, std::move(done));
+  });
+  ASSERT_TRUE(reply);
+  EXPECT_TRUE(reply->ok());
+  EXPECT_EQ(line.bridge.bitrate_bps, 125'000U);
+  EXPECT_EQ(line.bridge.mode, 2);
+  EXPECT_EQ(line.session.info().bitrate_bps, 125'000U);
+  reply = line.reply_of([&](SerialSession::Done done) {
+    line.session.set_bus(0, BridgeMode::normal, line.now, std::move(done));
+  });
+  ASSERT_TRUE(reply && reply->ok());
+  EXPECT_EQ(line.bridge.bitrate_bps, 125'000U) << "0: as it is";
+  reply = line.reply_of([&](SerialSession::Done done) {
+    line.session.set_address({3, 255}, line.now, std::move(done));
+  });
+  ASSERT_TRUE(reply && reply->ok());
+  EXPECT_FALSE(line.session.info().address) << "255: no node";
+  reply = line.reply_of(
+      [&](SerialSession::Done done) { line.session.identify(5, line.now, std::move(done)); });
+  ASSERT_TRUE(reply && reply->ok());
+  EXPECT_EQ(line.bridge.heard.back().back(), 5);
+
+  line.bridge.reset();
+  ASSERT_TRUE(line.run_until([&] { return line.session.counters().sessions == 2; }));
+  ASSERT_TRUE(line.run_until([&] { return line.session.phase() == Phase::ready; }));
+  EXPECT_EQ(line.bridge.bitrate_bps, 125'000U);
+}
+
+TEST(SerialRequests, AreRepeatedWhenTheReplyIsLost) {
+  Line line;
+  line.open();
+  line.bridge.may_send = losing(serial::Up::reply, 2);
+  const auto reply = line.reply_of(
+      [&](SerialSession::Done done) { line.session.identify(5, line.now, std::move(done)); });
+  ASSERT_TRUE(reply);
+  EXPECT_TRUE(reply->ok());
+  EXPECT_EQ(line.session.counters().retries, 2U);
+  EXPECT_EQ(line.bridge.count_of(serial::Down::identify), 3);
+}
+
+TEST(SerialRequests, EndWithoutAReply) {
+  Line line;
+  line.open();
+  line.bridge.may_send = losing(serial::Up::reply, 1000);
+  const auto reply = line.reply_of(
+      [&](SerialSession::Done done) { line.session.identify(5, line.now, std::move(done)); }, 1s);
+  ASSERT_TRUE(reply);
+  EXPECT_EQ(reply->kind, Reply::Kind::unanswered);
+  EXPECT_EQ(line.bridge.count_of(serial::Down::identify), 4);
+  EXPECT_EQ(line.session.phase(), Phase::ready);
+}
+
+TEST(SerialRequests, EndWithTheSession) {
+  Line line;
+  line.open();
+  line.bridge.is_deaf = true;
+  line.run_for(300ms);
+  std::vector<Reply> replies;
+  for (std::uint8_t i = 0; i < 3; ++i) {
+    line.session.identify(i, line.now, [&](const Reply& reply) { replies.push_back(reply); });
+  }
+  ASSERT_TRUE(line.run_until([&] { return line.session.phase() == Phase::calling; }, 1s));
+  ASSERT_EQ(replies.size(), 3U);
+  EXPECT_EQ(replies[0].kind, Reply::Kind::no_session);
+  EXPECT_EQ(replies[2].kind, Reply::Kind::no_session);
+  line.session.identify(9, line.now, [&](const Reply& reply) { replies.push_back(reply); });
+  ASSERT_EQ(replies.size(), 4U) << "at once";
+}
+
+TEST(SerialRequests, SayWhatTheBridgeSaid) {
+  Line line;
+  line.open();
+  line.bridge.verdict = [](serial::Down) -> std::uint8_t { return 8; };
+  const auto reply = line.reply_of([&](SerialSession::Done done) {
+    line.session.set_bus(83'333, BridgeMode::normal, line.now, std::move(done));
+  });
+  ASSERT_TRUE(reply);
+  EXPECT_FALSE(reply->ok());
+  EXPECT_EQ(reply->status, Status::bad_timing);
+  EXPECT_EQ(line.session.info().bitrate_bps, 500'000U) << "nothing has changed";
+}
+
+TEST(SerialRequests, RulesAreKeptWithoutASession) {
+  Line line;
+  std::optional<Reply> reply;
+  line.session.set_rules({{5, 7}}, line.now, [&](const Reply& what) { reply = what; });
+  ASSERT_TRUE(reply);
+  EXPECT_EQ(reply->kind, Reply::Kind::no_session);
+  line.open();
+  ASSERT_EQ(line.bridge.rules.size(), 1U);
+  EXPECT_EQ(line.bridge.rules[0].match, 5U);
+}
+
+TEST(SerialRequests, LeaveEndsTheSessionOnBothSides) {
+  Line line;
+  line.open();
+  const auto reply = line.reply_of(
+      [&](SerialSession::Done done) { line.session.leave(line.now, std::move(done)); });
+  ASSERT_TRUE(reply);
+  EXPECT_TRUE(reply->ok());
+  EXPECT_EQ(line.session.phase(), Phase::closed);
+  EXPECT_EQ(line.bridge.session(), 0U);
+  EXPECT_EQ(line.bridge.rate_bps, 115'200U);
+}
+
+TEST(SerialRequests, LeaveEndsASessionWhoseBridgeDoesNotAnswer) {
+  Line line;
+  line.open();
+  line.bridge.is_deaf = true;
+  const auto reply = line.reply_of(
+      [&](SerialSession::Done done) { line.session.leave(line.now, std::move(done)); }, 300ms);
+  ASSERT_TRUE(reply);
+  EXPECT_EQ(reply->kind, Reply::Kind::unanswered);
+  EXPECT_EQ(line.session.phase(), Phase::closed);
+}
+
+}  // namespace
+}  // namespace roio::test

@@ -1,0 +1,87 @@
+#include "buses.hpp"
+
+#include <algorithm>
+#include <roio/bridge.hpp>
+#include <roio/bus_list.hpp>
+#include <vector>
+
+#include "bridge_report.hpp"
+#include "exit_status.hpp"
+#include "output.hpp"
+
+namespace roio::cli {
+namespace {
+
+BusReport report_of(const CanInterface& interface) {
+  BusReport report{.bus = interface.name, .kind = "can"};
+  report.state = to_string(interface.state);
+  report.bitrate_bps = interface.bitrate_bps;
+  report.interface_kind = interface.kind;
+  return report;
+}
+
+BusReport report_of(const BridgePort& port) {
+  BusReport report{.bus = "serial:" + port.path, .kind = "serial"};
+  if (!port.product.empty()) {
+    report.product = port.product;
+  }
+  if (!port.bridge) {
+    report.why_not = port.why_not;
+    return report;
+  }
+  report.state = to_string(port.bridge->state);
+  report.bitrate_bps = port.bridge->bitrate_bps;
+  report.board = to_string(port.bridge->board);
+  report.firmware = to_string(port.bridge->firmware);
+  return report;
+}
+
+std::vector<BusReport> look_for_buses() {
+  std::vector<BusReport> found;
+  for (const CanInterface& interface : can_interfaces()) {
+    found.push_back(report_of(interface));
+  }
+  for (const std::string& bus : local_buses()) {
+    found.push_back({.bus = bus, .kind = "local"});
+  }
+  for (const BridgePort& port : find_bridges()) {
+    found.push_back(report_of(port));
+  }
+  return found;
+}
+
+void say_what_to_do() {
+  note(
+      "no CAN interface: plug in an adapter, or `ip link add vcan0 type vcan; ip link set vcan0 "
+      "up` makes a virtual one");
+  note("no local bus: `roio-cli dump local:robot` makes one");
+  note(
+      "no serial port with a bridge: plug in an Arduino with the bridge_usb firmware, or name its "
+      "port in ROIO_SERIAL_PORTS");
+}
+
+}  // namespace
+
+int buses(const BusesOptions& options) {
+  const std::vector<BusReport> found = look_for_buses();
+  if (found.empty()) {
+    say_what_to_do();
+    return exit_success;
+  }
+  std::size_t width = 0;
+  for (const BusReport& report : found) {
+    width = std::max(width, report.bus.size());
+  }
+  Buffer out;
+  for (const BusReport& report : found) {
+    if (options.json) {
+      append_json(out, report);
+    } else {
+      append_text(out, report, width);
+    }
+  }
+  flush(out);
+  return exit_success;
+}
+
+}  // namespace roio::cli
