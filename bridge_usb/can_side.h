@@ -83,7 +83,6 @@ class Slots {
     --pending_;
     add_news();
   }
-  bool any_pending() const { return pending_ != 0; }
   /// What the PC does not know yet: a frame was taken, or came to its end.
   void add_news() { ++news_; }
   void take_news() { news_ = 0; }

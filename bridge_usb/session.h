@@ -308,13 +308,10 @@ ROIO_BRIDGE_FAST inline void Session::take_frame(const uint8_t* body, uint8_t le
 
 inline void Session::control(serial::Down operation, const uint8_t* payload, uint8_t length) {
   if (operation == serial::Down::poll && length == 1) {
-    wanted_ |= status;
+    wanted_ |= status | results;
     if (payload[0] != 0) {
       wanted_ |= counters;
       next_counter_ = 0;
-    }
-    if (can_.slots().any_pending()) {
-      wanted_ |= results;
     }
     return;
   }
@@ -479,7 +476,9 @@ ROIO_BRIDGE_FAST inline void Session::forward(const Mcp2515Frame& frame, uint16_
   if (!is_open()) {
     return;
   }
-  if (!has_room(static_cast<uint8_t>(length + reserve))) {
+  // A line that is to change its rate has to run empty, and WELCOME needs more room than a frame.
+  if (change_ == Change::draining || (wanted_ & welcome) != 0 ||
+      !has_room(static_cast<uint8_t>(length + reserve))) {
     ++tally_.dropped;
     return;
   }

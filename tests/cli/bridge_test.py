@@ -6,6 +6,7 @@ import json
 import os
 import re
 import signal
+import socket
 import subprocess
 import sys
 import unittest
@@ -13,7 +14,7 @@ import unittest
 from driver import CLI, GUARD, main
 
 sys.path.append(os.path.join(os.path.dirname(__file__), "..", "roio_sim"))
-from sim_driver import Lines, SimTest  # noqa: E402
+from sim_driver import Lines, Sim, SimTest  # noqa: E402
 
 BRIDGE = os.path.join(os.environ["ROIO_SIM_IMAGES"], "uno", "bridge_usb.elf")
 IN_USE = "another program has the port open; `fuser -v` with the port's name tells which"
@@ -94,14 +95,20 @@ class Attach:
         self.process.stderr.close()
 
 
+def start_bridge(test, bus="local:robot"):
+    """A board that is there, and the path of its terminal."""
+    port = test.path("ttyACM0")
+    board = Sim("--bus", bus, "--serial-pty", "usb:" + port, "usb:uno=" + BRIDGE)
+    test.addCleanup(board.end)
+    board.wait_for("usb: can: normal, 500000 bit/s")
+    return board, port
+
+
 class BridgeTest(SimTest):
     def setUp(self):
         super().setUp()
-        self.port = self.path("ttyACM0")
+        self.board, self.port = start_bridge(self)
         os.environ["ROIO_SERIAL_PORTS"] = self.port
-        self.board = self.sim("--bus", "local:robot", "--serial-pty", "usb:" + self.port,
-                              "usb:uno=" + BRIDGE)
-        self.board.wait_for("usb: can: normal, 500000 bit/s")
 
     def attach(self, *arguments, **options):
         attach = Attach(*arguments, **options)
@@ -304,6 +311,17 @@ class NothingTest(SimTest):
             "roio-cli: no local bus: `roio-cli dump local:robot` makes one\n"
             "roio-cli: no serial port with a bridge: plug in an Arduino with the bridge_usb firmware, "
             "or name its port in ROIO_SERIAL_PORTS\n")
+
+    def test_what_a_killed_program_left_is_no_bus(self):
+        os.environ["ROIO_SERIAL_PORTS"] = self.path("ttyACM*")
+        folder = os.environ["ROIO_RUNTIME_DIR"]
+        os.mkdir(folder, 0o700)
+        with socket.socket(socket.AF_UNIX) as left:
+            left.bind(os.path.join(folder, "dead.sock"))
+        for name in ("no socket.sock", "other"):
+            with open(os.path.join(folder, name), "w"):
+                pass
+        self.assertNotIn("local:", self.run_cli("buses")[1])
 
     def test_a_file_that_is_no_port(self):
         with open(self.path("file"), "w"):

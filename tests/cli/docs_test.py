@@ -4,7 +4,8 @@
 A block is one bash session: "$ " begins a command, "> " goes on with it, the rest is output. Commands
 that end with "&" run until they end by themselves; what they print stands at the block's end, in their
 order. Blocks that name vcan0 need real SocketCAN and are run with ROIO_CLI_ON_SOCKETCAN, the others
-without.
+without. For blocks that name /dev/ttyACM0 there is a bridge on a simulated board, if there is ROIO_SIM;
+the terminal's path is longer, so with them the number of spaces does not count.
 """
 
 import os
@@ -14,7 +15,12 @@ import subprocess
 
 from driver import CLI, GUARD, CliTest, main, masked
 
+WITH_BRIDGE = "ROIO_SIM" in os.environ
+if WITH_BRIDGE:
+    from bridge_test import start_bridge, without_repeats
+
 DOCUMENT = os.environ["ROIO_CLI_DOCUMENT"]
+PORT = "/dev/ttyACM0"
 ON_SOCKETCAN = "ROIO_CLI_ON_SOCKETCAN" in os.environ
 
 # Stands for roio-cli in the background: says in a file when it listens.
@@ -58,7 +64,11 @@ def session(commands):
     """The commands as a script that waits for what runs in the background, first to listen, then to end."""
     script, background = [], 0
     for command in commands:
-        if command.endswith("&"):
+        if " bridge attach " in command:
+            background += 1
+            script.append(f'{command[:-1]} >"$OUT.{background}" 2>&1 &')
+            script.append(f'until grep -q ": attached to " "$OUT.{background}"; do sleep 0.01; done')
+        elif command.endswith("&"):
             background += 1
             script.append(command.replace("roio-cli", "listener", 1)[:-1] + f'>"$OUT.{background}" 2>&1 &')
             script.append('until [ -e "$LISTENING" ]; do sleep 0.01; done; rm "$LISTENING"')
@@ -82,13 +92,30 @@ class DocumentTest(CliTest):
         blocks = list(console_blocks())
         self.assertNotEqual(blocks, [])
         for line, block in blocks:
-            commands, output = split(block)
             with self.subTest(line=line):
-                done = subprocess.run(
-                    ["bash", "-c", session(commands)], stdout=subprocess.PIPE,
-                    stderr=subprocess.STDOUT, text=True, timeout=GUARD, env=env,
-                )
-                self.assertEqual(masked(done.stdout), masked(output))
+                if PORT not in block:
+                    self.check(block, env)
+                elif WITH_BRIDGE:
+                    self.check_with_bridge(block, env)
+
+    def printed(self, commands, env):
+        done = subprocess.run(
+            ["bash", "-c", session(commands)], stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
+            text=True, timeout=GUARD, env=env,
+        )
+        return masked(done.stdout)
+
+    def check(self, block, env):
+        commands, output = split(block)
+        self.assertEqual(self.printed(commands, env), masked(output))
+
+    def check_with_bridge(self, block, env):
+        commands, output = split(block)
+        sim, port = start_bridge(self)
+        printed = self.printed([command.replace(PORT, port) for command in commands],
+                               dict(env, ROIO_SERIAL_PORTS=port)).replace(port, PORT)
+        sim.end()
+        self.assertEqual(*(re.sub(" +", " ", without_repeats(text)) for text in (printed, output)))
 
 
 if __name__ == "__main__":

@@ -2,6 +2,7 @@
 #ifndef ROIO_HPP
 #define ROIO_HPP
 
+#include <roio/bridge.hpp>
 #include <roio/bus.hpp>
 #include <roio/bus_list.hpp>
 #include <roio/candump_log.hpp>

@@ -14,7 +14,7 @@ std::vector<std::string> local_buses() {
     return found;
   }
   for (const auto& entry : std::filesystem::directory_iterator(folder)) {
-    const std::filesystem::path path = entry.path();
+    const std::filesystem::path& path = entry.path();
     const std::string url = "local:" + path.stem().string();
     // A hub that was killed leaves its socket; only a living one answers.
     if (path.extension() == ".sock" && parse_bus_url(url) &&

@@ -32,9 +32,9 @@ Forwarder::Forwarder(NamedBus from, NamedBus to)
       }) {}
 
 void Forwarder::stop() {
-  stop_at_ = Clock::now() + stop_time;
-  stopping_ = true;
   if (thread_.joinable()) {
+    stop_at_ = Clock::now() + stop_time;
+    stopping_ = true;
     thread_.join();
   }
 }

@@ -115,6 +115,7 @@ class Bridge {
   /// Without waiting.
   [[nodiscard]] virtual BridgeLineCounters line_counters() const = 0;
 
+  // NOLINTBEGIN(google-default-arguments): what overrides these has none of its own.
   // The following wait for the bridge's answer. All throw std::system_error
   //   Errc::no_bridge       it did not answer in time;
   //   Errc::bridge_refused  it answered that it cannot, and why.
@@ -134,6 +135,7 @@ class Bridge {
   /// Has the board's LED blink for so long, 0..255 s; 0 ends it. Not done again after a reset.
   virtual void identify(std::chrono::seconds duration,
                         Timeout timeout = std::chrono::seconds(1)) = 0;
+  // NOLINTEND(google-default-arguments)
 };
 
 /// The bridge behind a bus that open("serial:...") returned; null for any other kind of bus. Lives
