@@ -118,8 +118,12 @@ class SlcanSide {
     }
   }
 
+  /// One that is open stays so.
   bool open(serial::Mode mode) {
-    is_open_ = !is_open_ && can_.configure(bitrate_bps_, mode) == Status::ok;
+    if (is_open_) {
+      return false;
+    }
+    is_open_ = can_.configure(bitrate_bps_, mode) == Status::ok;
     return is_open_;
   }
 
