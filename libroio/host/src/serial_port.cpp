@@ -110,7 +110,7 @@ bool SerialPort::set_rate(std::uint32_t rate_bps) {
   return set_line_rate(fd(), rate_bps);
 }
 
-std::optional<std::size_t> SerialPort::read(std::span<std::uint8_t> bytes) {
+std::optional<std::size_t> SerialPort::read(std::span<std::uint8_t> bytes) const {
   const ssize_t count = ::read(fd(), bytes.data(), bytes.size());
   if (count > 0) {
     return static_cast<std::size_t>(count);
@@ -118,7 +118,7 @@ std::optional<std::size_t> SerialPort::read(std::span<std::uint8_t> bytes) {
   return count < 0 && would_wait() ? std::optional<std::size_t>(0) : std::nullopt;
 }
 
-std::optional<std::size_t> SerialPort::write(std::span<const std::uint8_t> bytes) {
+std::optional<std::size_t> SerialPort::write(std::span<const std::uint8_t> bytes) const {
   const ssize_t count = ::write(fd(), bytes.data(), bytes.size());
   if (count >= 0) {
     return static_cast<std::size_t>(count);

@@ -31,9 +31,9 @@ class SerialPort {
   /// What the port has not sent yet is thrown away.
   [[nodiscard]] bool set_rate(std::uint32_t rate_bps);
   /// @return how many bytes have come, maybe 0.
-  std::optional<std::size_t> read(std::span<std::uint8_t> bytes);
+  std::optional<std::size_t> read(std::span<std::uint8_t> bytes) const;
   /// @return how many it took, maybe 0.
-  std::optional<std::size_t> write(std::span<const std::uint8_t> bytes);
+  std::optional<std::size_t> write(std::span<const std::uint8_t> bytes) const;
 
  private:
   UniqueFd fd_;

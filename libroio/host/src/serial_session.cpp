@@ -6,7 +6,8 @@
 
 namespace roio {
 
-using namespace serial;
+// All that this file is about.
+using namespace serial;  // NOLINT(google-build-using-namespace)
 
 namespace {
 
@@ -761,7 +762,7 @@ void SerialSession::open_session(std::span<const std::uint8_t> payload, Time now
 bool SerialSession::take_status(std::span<const std::uint8_t> payload, Time now) {
   if (payload.size() != status_length - control_head ||
       payload[8] > static_cast<std::uint8_t>(BridgeState::stuck) ||
-      !clock_.status(get32(&payload[0]), now) || !up_.settle(get32(&payload[4]))) {
+      !clock_.status(get32(payload.data()), now) || !up_.settle(get32(&payload[4]))) {
     return false;
   }
   const BridgeState before = std::exchange(info_.state, static_cast<BridgeState>(payload[8]));

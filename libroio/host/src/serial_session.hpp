@@ -48,6 +48,7 @@ struct SerialSettings {
   std::optional<std::vector<SerialRule>> rules{};
 };
 
+// NOLINTNEXTLINE(clang-analyzer-optin.performance.Padding): members stand by what they are for
 class SerialSession {
  public:
   using Time = serial::Time;
