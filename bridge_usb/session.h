@@ -79,30 +79,6 @@ class Session {
   void tend();
 
  private:
-  /// The body of a control record, put together.
-  class Body {
-   public:
-    Body(serial::Up operation, uint32_t due) : end_(bytes_) {
-      put(static_cast<uint8_t>(operation));
-      put(static_cast<uint8_t>(due));
-    }
-    void put(uint8_t byte) { *end_++ = byte; }
-    void put16(uint16_t value) {
-      put(static_cast<uint8_t>(value >> 8));
-      put(static_cast<uint8_t>(value));
-    }
-    void put32(uint32_t value) {
-      put16(static_cast<uint16_t>(value >> 16));
-      put16(static_cast<uint16_t>(value));
-    }
-    const uint8_t* bytes() const { return bytes_; }
-    uint8_t length() const { return static_cast<uint8_t>(end_ - bytes_); }
-
-   private:
-    uint8_t* end_;
-    uint8_t bytes_[serial::max_body];
-  };
-
   // Answers that wait for room.
   static constexpr uint8_t welcome = 0x01;
   static constexpr uint8_t reply = 0x02;
@@ -145,7 +121,11 @@ class Session {
   void send_counters();
   void send_results();
   void write(uint32_t session, const uint8_t* body, uint8_t length);
-  void write(const Body& body) { write(session_, body.bytes(), body.length()); }
+  void begin(serial::Body& body, serial::Up operation) const {
+    body.put(static_cast<uint8_t>(operation));
+    body.put(static_cast<uint8_t>(due_));
+  }
+  void write(const serial::Body& body) { write(session_, body.bytes(), body.length()); }
   bool has_room(uint8_t body_length) const {
     return line_.room() >= static_cast<uint8_t>(body_length + record_overhead);
   }
@@ -408,7 +388,8 @@ inline void Session::echo(const uint8_t* payload, uint8_t length) {
   if (!has_room(static_cast<uint8_t>(serial::control_head + length))) {
     return;  // the PC asks again
   }
-  Body body(serial::Up::echoed, due_);
+  serial::Body body;
+  begin(body, serial::Up::echoed);
   for (uint8_t i = 0; i < length; ++i) {
     body.put(payload[i]);
   }
@@ -532,7 +513,8 @@ inline void Session::send_answers() {
     send_welcome();
   } else if ((wanted_ & reply) != 0 && has_room(serial::reply_length)) {
     wanted_ &= static_cast<uint8_t>(~reply);
-    Body body(serial::Up::reply, due_);
+    serial::Body body;
+    begin(body, serial::Up::reply);
     body.put(reply_request_);
     body.put(static_cast<uint8_t>(reply_status_));
     write(body);
@@ -548,7 +530,8 @@ inline void Session::send_answers() {
 }
 
 inline void Session::send_welcome() {
-  Body body(serial::Up::welcome, due_);
+  serial::Body body;
+  begin(body, serial::Up::welcome);
   body.put(serial::protocol_version);
   body.put32(welcomed_);
   body.put32(previous_);
@@ -573,7 +556,8 @@ inline void Session::send_status() {
   uint8_t transmit = 0;
   uint8_t receive = 0;
   can_.read_error_counters(transmit, receive);
-  Body body(serial::Up::status, due_);
+  serial::Body body;
+  begin(body, serial::Up::status);
   body.put32(clock_.ticks());
   body.put32(due_);
   body.put(static_cast<uint8_t>(can_.state()));
@@ -584,7 +568,8 @@ inline void Session::send_status() {
 
 /// In parts, or the bus would wait too long.
 inline void Session::send_counters() {
-  Body body(serial::Up::counters, due_);
+  serial::Body body;
+  begin(body, serial::Up::counters);
   body.put(next_counter_);
   for (uint8_t i = 0; i < serial::counters_at_once && next_counter_ < serial::counter_count; ++i) {
     body.put32(tally_.value(next_counter_++));
@@ -598,7 +583,8 @@ inline void Session::send_counters() {
 
 inline void Session::send_results() {
   can_.slots().take_news();
-  Body body(serial::Up::results, due_);
+  serial::Body body;
+  begin(body, serial::Up::results);
   body.put(next_);
   body.put((wanted_ & results_again) != 0 ? serial::again : uint8_t{0});
   for (uint8_t n = 4; n-- != 0;) {

@@ -22,22 +22,12 @@ constexpr uint8_t max_body = 56;
 constexpr uint8_t max_record = 1 + max_body + check_length + 1;
 constexpr uint8_t delimiter = 0;
 
-/// Writes one record into a Sink, byte by byte.
-///
-///   struct Sink { void put(uint8_t offset, uint8_t byte); };  // in no order; offset < max_record
-///
-///   RecordWriter<Sink> writer(sink, session);
-///   writer.put(...);                      // the body: max_body bytes at most
-///   const uint8_t length = writer.finish();
-template <typename Sink>
-class RecordWriter {
+/// The body of a record, as it is put together: max_body bytes at most.
+class Body {
  public:
-  RecordWriter(Sink& sink, uint32_t session) : sink_(sink), check_(session), zero_(0), at_(1) {}
+  Body() : length_(0) {}  // the bytes are nobody's before they are put
 
-  void put(uint8_t byte) {
-    check_.add(byte);
-    append(byte);
-  }
+  void put(uint8_t byte) { bytes_[length_++] = byte; }
   void put16(uint16_t value) {
     put(static_cast<uint8_t>(value >> 8));
     put(static_cast<uint8_t>(value));
@@ -46,39 +36,19 @@ class RecordWriter {
     put16(static_cast<uint16_t>(value >> 16));
     put16(static_cast<uint16_t>(value));
   }
-
-  /// @return how many bytes the record has.
-  uint8_t finish() {
-    const uint32_t check = check_.value();
-    append(static_cast<uint8_t>(check));
-    append(static_cast<uint8_t>(check >> 8));
-    append(static_cast<uint8_t>(check >> 16));
-    append(static_cast<uint8_t>(check >> 24));
-    append(delimiter);  // ends the last block as a zero does, and stays one
-    sink_.put(zero_, delimiter);
-    return at_;
-  }
+  const uint8_t* bytes() const { return bytes_; }
+  uint8_t length() const { return length_; }
 
  private:
-  // A zero is known by its distance to the next one, so it is written when that comes.
-  void append(uint8_t byte) {
-    if (byte == 0) {
-      sink_.put(zero_, static_cast<uint8_t>(at_ - zero_));
-      zero_ = at_;
-    } else {
-      sink_.put(at_, byte);
-    }
-    ++at_;
-  }
-
-  Sink& sink_;
-  Crc32c check_;
-  uint8_t zero_;  // where the last zero, or the record's first byte, is to be told
-  uint8_t at_;
+  uint8_t length_;
+  uint8_t bytes_[max_body];
 };
 
-/// Writes a body that is there already: the same record, faster, for all that changes with each
-/// byte can stay in registers. The sink is best a small value, too.
+/// Writes a record into a Sink, best a small value, so that all that changes with each byte can
+/// stay in registers.
+///
+///   struct Sink { void put(uint8_t offset, uint8_t byte); };  // in no order; offset < max_record
+///
 /// @param length min_body..max_body.
 /// @return how many bytes the record has.
 template <typename Sink>
@@ -112,6 +82,24 @@ __attribute__((always_inline)) inline uint8_t write_record(Sink sink, uint32_t s
   sink.put(at, delimiter);
   return static_cast<uint8_t>(at + 1U);
 }
+
+/// A body that becomes a record where it ends: for who has time.
+///
+///   RecordWriter<Sink> writer(sink, session);
+///   writer.put(...);
+///   const uint8_t length = writer.finish();
+template <typename Sink>
+class RecordWriter : public Body {
+ public:
+  RecordWriter(Sink& sink, uint32_t session) : sink_(sink), session_(session) {}
+
+  /// @return how many bytes the record has.
+  uint8_t finish() { return write_record<Sink&>(sink_, session_, bytes(), length()); }
+
+ private:
+  Sink& sink_;
+  uint32_t session_;
+};
 
 /// Finds records in a stream of bytes.
 ///
@@ -149,16 +137,11 @@ class RecordReader {
       uint8_t byte = *bytes++;
       --left;
       if (byte == delimiter) {
-        length_ = length;
-        block_ = block;
-        event = end();
-        if (event != Event::none) {
-          break;
+        if (state_ == State::empty) {
+          continue;
         }
-        length = 0;
-        block = 0;
-        state_ = State::empty;
-        continue;
+        event = end(length, block);
+        break;
       }
       // A block's first byte says how far its zero is; the first of all has none before it.
       if (block != 0) {
@@ -207,15 +190,12 @@ class RecordReader {
     ended,   // the buffer is the reader's user's
   };
 
-  Event end() {
-    const State state = state_;
+  /// Something ends, here.
+  Event end(uint8_t length, uint8_t block) {
+    const bool is_record =
+        state_ == State::inside && block == 0 && length >= min_body + check_length;
     state_ = State::ended;
-    if (state == State::empty || state == State::ended) {
-      return Event::none;
-    }
-    return state == State::inside && block_ == 0 && length_ >= min_body + check_length
-               ? Event::record
-               : Event::damaged;
+    return is_record ? Event::record : Event::damaged;
   }
 
   uint8_t length_;
