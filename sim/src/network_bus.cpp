@@ -1,15 +1,12 @@
 #include "network_bus.hpp"
 
-#include <poll.h>
-
-#include <array>
-#include <atomic>
 #include <roio/error.hpp>
 #include <system_error>
 #include <utility>
 
 #include "deadline.hpp"
 #include "frame_check.hpp"
+#include "queued_calls.hpp"
 
 namespace roio::sim {
 namespace {
@@ -42,68 +39,47 @@ class NetworkBus final : public Bus {
   [[nodiscard]] int fd() const noexcept override { return exchange_->readable().fd(); }
   [[nodiscard]] BusState state() const override { return exchange_->state(); }
   [[nodiscard]] Statistics statistics() const override { return exchange_->statistics(); }
-  void cancel() noexcept override;
-  void resume() noexcept override;
+  void cancel() noexcept override { waits_.cancel(); }
+  void resume() noexcept override { waits_.resume(); }
   void close() noexcept override;
   [[nodiscard]] const std::string& name() const noexcept override { return core_->options().name; }
 
  private:
-  void wait(const EventFlag& flag, const Deadline& deadline) const;
-
   std::shared_ptr<NetworkCore> core_;
   std::shared_ptr<Exchange> exchange_;
   Station* station_ = nullptr;  // the core's, and for its thread only
-  EventFlag cancel_;
-  EventFlag closed_flag_;
-  std::atomic<bool> cancelled_{false};
-  std::atomic<bool> closed_{false};
+  Waits waits_;
 };
 
 Transfer NetworkBus::send(std::span<const Frame> frames, Timeout timeout) {
   check_sendable(frames);
-  const Deadline deadline(timeout);
-  std::size_t count = 0;
-  for (;;) {
-    const Exchange::Offered offered = exchange_->offer(frames.subspan(count), core_->due());
-    count += offered.count;
-    if (offered.wake) {
-      core_->wake();
-    }
-    if (closed_) {
-      return {Result::closed, count};
-    }
-    if (count == frames.size()) {
-      return {Result::ok, count};
-    }
-    if (cancelled_) {
-      return {Result::cancelled, count};
-    }
-    if (deadline.passed()) {
-      exchange_->count_send_timeout();
-      return {Result::timeout, count};
-    }
-    exchange_->count_send_wait();
-    wait(exchange_->sendable(), deadline);
-  }
+  return send_queued(
+      waits_, exchange_->sendable(), frames, timeout,
+      [this](std::span<const Frame> rest) -> std::optional<std::size_t> {
+        if (waits_.is_closed()) {
+          return std::nullopt;
+        }
+        const Exchange::Offered offered = exchange_->offer(rest, core_->due());
+        if (offered.wake) {
+          core_->wake();
+        }
+        return offered.count;
+      },
+      [this](bool gives_up) {
+        if (gives_up) {
+          exchange_->count_send_timeout();
+        } else {
+          exchange_->count_send_wait();
+        }
+      });
 }
 
 Transfer NetworkBus::receive(std::span<Received> frames, Timeout timeout) {
-  const Deadline deadline(timeout);
-  for (;;) {
-    if (closed_) {
-      return {Result::closed, 0};
-    }
-    if (const std::size_t count = exchange_->take(frames); count > 0) {
-      return {Result::ok, count};
-    }
-    if (frames.empty() || deadline.passed()) {
-      return {cancelled_ ? Result::cancelled : Result::timeout, 0};
-    }
-    if (cancelled_) {
-      return {Result::cancelled, 0};
-    }
-    wait(exchange_->readable(), deadline);
-  }
+  return receive_queued(waits_, exchange_->readable(), frames, timeout,
+                        [this](std::span<Received> room) -> std::optional<std::size_t> {
+                          return waits_.is_closed() ? std::nullopt
+                                                    : std::optional(exchange_->take(room));
+                        });
 }
 
 void NetworkBus::set_filters(std::span<const SocketCanFilter> filters) {
@@ -113,31 +89,14 @@ void NetworkBus::set_filters(std::span<const SocketCanFilter> filters) {
   exchange_->set_filters(filters);
 }
 
-void NetworkBus::cancel() noexcept {
-  cancelled_ = true;
-  cancel_.set();
-}
-
-void NetworkBus::resume() noexcept {
-  cancelled_ = false;
-  cancel_.clear();
-}
-
 void NetworkBus::close() noexcept {
-  if (closed_.exchange(true)) {
+  if (waits_.is_closed()) {
     return;
   }
-  closed_flag_.set();
+  waits_.close();
   exchange_->close(close_time);
   // When the simulation has ended, the station is gone with it.
   core_->call([this] { core_->remove(station_); });
-}
-
-/// Returns when the flag is set or the time is up, and at once when cancelled or closed.
-void NetworkBus::wait(const EventFlag& flag, const Deadline& deadline) const {
-  std::array<pollfd, 3> entries{
-      {{flag.fd(), POLLIN, 0}, {cancel_.fd(), POLLIN, 0}, {closed_flag_.fd(), POLLIN, 0}}};
-  static_cast<void>(::poll(entries.data(), entries.size(), deadline.poll_ms()));
 }
 
 }  // namespace

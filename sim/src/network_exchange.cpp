@@ -1,22 +1,9 @@
 #include "network_exchange.hpp"
 
 #include <algorithm>
-#include <roio/header.hpp>
 #include <utility>
 
 namespace roio::sim {
-namespace {
-
-constexpr std::size_t urgent_lane = 0;
-constexpr std::size_t normal_lane = 1;
-
-std::size_t lane_of(const Frame& frame) {
-  return is_extended(frame.kind) && unpack_id(frame.id).priority == Priority::urgent ? urgent_lane
-                                                                                     : normal_lane;
-}
-
-}  // namespace
-
 Exchange::Exchange(const OpenOptions& options) : error_frames_(options.error_frames) {
   if (!options.send_only) {
     filters_ = {SocketCanFilter{0, 0}};
@@ -31,7 +18,7 @@ Exchange::Offered Exchange::offer(std::span<const Frame> frames, SimTime since) 
   const bool open = !closed_ && state_ != BusState::absent;
   while (open && offered.count < frames.size()) {
     const Frame& frame = frames[offered.count];
-    auto& lane = lanes_.at(lane_of(frame));
+    auto& lane = lanes_.at(lane_in_driver(frame));
     if (lane.size() >= lane_capacity) {
       break;
     }
@@ -59,18 +46,7 @@ void Exchange::count_send_timeout() {
 
 std::size_t Exchange::take(std::span<Received> frames) {
   const std::lock_guard lock(mutex_);
-  const std::size_t count = std::min(frames.size(), queue_.size());
-  const auto end = queue_.begin() + static_cast<std::ptrdiff_t>(count);
-  std::copy(queue_.begin(), end, frames.begin());
-  statistics_.received +=
-      static_cast<std::uint64_t>(std::count_if(queue_.begin(), end, [](const Received& received) {
-        return received.frame.kind != FrameKind::error;
-      }));
-  queue_.erase(queue_.begin(), end);
-  if (queue_.empty()) {
-    readable_.clear();
-  }
-  return count;
+  return queue_.take(frames);
 }
 
 void Exchange::set_filters(std::span<const SocketCanFilter> filters) {
@@ -85,7 +61,9 @@ BusState Exchange::state() const {
 
 Statistics Exchange::statistics() const {
   const std::lock_guard lock(mutex_);
-  return statistics_;
+  Statistics statistics = statistics_;
+  queue_.add_to(statistics);
+  return statistics;
 }
 
 void Exchange::close(std::chrono::nanoseconds patience) {
@@ -140,17 +118,8 @@ void Exchange::deliver(const Frame& frame, Timestamp time) {
 }
 
 void Exchange::enqueue(const Frame& frame, Timestamp time) {
-  if (closed_) {
-    return;
-  }
-  if (queue_.size() >= receive_capacity) {
-    ++statistics_.dropped;
-    ++lost_;
-    return;
-  }
-  queue_.push_back({frame, time, std::exchange(lost_, 0)});
-  if (queue_.size() == 1) {
-    readable_.set();
+  if (!closed_) {
+    queue_.put(frame, time);
   }
 }
 

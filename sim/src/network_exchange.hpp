@@ -15,6 +15,8 @@
 #include <vector>
 
 #include "fd.hpp"
+#include "lanes.hpp"
+#include "receive_queue.hpp"
 
 namespace roio::sim {
 
@@ -22,7 +24,6 @@ namespace roio::sim {
 /// directions, and what is known of the controller. Each call is safe beside any other.
 class Exchange {
  public:
-  static constexpr std::size_t lane_count = 2;  // urgent and normal frames
   static constexpr std::size_t lane_capacity = 128;
   static constexpr std::size_t receive_capacity = 4096;
 
@@ -44,7 +45,7 @@ class Exchange {
   std::size_t take(std::span<Received> frames);
   void set_filters(std::span<const SocketCanFilter> filters);
   /// Set while frames wait to be taken.
-  [[nodiscard]] const EventFlag& readable() const { return readable_; }
+  [[nodiscard]] const EventFlag& readable() const { return queue_.readable(); }
   [[nodiscard]] const EventFlag& sendable() const { return sendable_; }
   [[nodiscard]] BusState state() const;
   [[nodiscard]] Statistics statistics() const;
@@ -86,7 +87,6 @@ class Exchange {
   void abandon_locked();
   void enqueue(const Frame& frame, Timestamp time);
 
-  EventFlag readable_;
   EventFlag sendable_;
   const bool error_frames_;
 
@@ -97,8 +97,7 @@ class Exchange {
   bool sender_waits_ = false;
   bool closed_ = false;
   std::vector<SocketCanFilter> filters_;
-  std::deque<Received> queue_;
-  std::uint64_t lost_ = 0;  // not yet told with a frame
+  ReceiveQueue queue_{receive_capacity};
   BusState state_ = BusState::active;
   Statistics statistics_;
 };

@@ -72,7 +72,7 @@ void Station::receive() {
 }
 
 void Station::send() {
-  for (std::size_t lane = 0; lane < Exchange::lane_count; ++lane) {
+  for (std::size_t lane = 0; lane < lane_count; ++lane) {
     std::optional<Frame> frame;
     while ((frame = exchange_->next(lane, bus_.now())) && can_.send(*frame) == Status::ok) {
       exchange_->handed_over(lane);

@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <array>
-#include <atomic>
 #include <condition_variable>
 #include <deque>
+#include <limits>
 #include <mutex>
 #include <roio/error.hpp>
 #include <thread>
@@ -16,6 +16,8 @@
 #include "local_connection.hpp"
 #include "local_senders.hpp"
 #include "local_thread.hpp"
+#include "queued_calls.hpp"
+#include "receive_queue.hpp"
 
 namespace roio {
 namespace local {
@@ -53,11 +55,11 @@ class LocalBus final : public Bus {
   Transfer send(std::span<const Frame> frames, Timeout timeout) override;
   Transfer receive(std::span<Received> frames, Timeout timeout) override;
   void set_filters(std::span<const SocketCanFilter> filters) override;
-  [[nodiscard]] int fd() const noexcept override { return readable_.fd(); }
+  [[nodiscard]] int fd() const noexcept override { return queue_.readable().fd(); }
   [[nodiscard]] BusState state() const override;
   [[nodiscard]] Statistics statistics() const override;
-  void cancel() noexcept override;
-  void resume() noexcept override;
+  void cancel() noexcept override { waits_.cancel(); }
+  void resume() noexcept override { waits_.resume(); }
   void close() noexcept override;
   [[nodiscard]] const std::string& name() const noexcept override { return name_; }
 
@@ -82,18 +84,12 @@ class LocalBus final : public Bus {
   void reconnect();
   [[nodiscard]] bool wants_to_write() const;
 
-  void wait(const EventFlag& flag, const Deadline& deadline) const;
-
   std::string name_;
   Connector connector_;  // by the constructor, then by the reading thread, then by close()
-  EventFlag readable_;   // frames are queued
   EventFlag sendable_;   // room may have come since send() found none
-  EventFlag cancel_;
-  EventFlag closed_flag_;
   EventFlag stop_;
   EventFlag wake_;  // the reading thread has bytes to send, too
-  std::atomic<bool> cancelled_{false};
-  std::atomic<bool> closed_{false};
+  Waits waits_;
 
   mutable std::mutex mutex_;
   std::condition_variable all_done_;
@@ -102,13 +98,13 @@ class LocalBus final : public Bus {
   std::array<std::deque<OfferedFrame>, lane_count> sent_;  // not reported done yet
   std::array<std::size_t, lane_count> offered_{};          // of sent_, to this hub
   std::array<std::uint64_t, lane_count> sequence_{};
-  std::deque<Received> queue_;
+  // The hub sees to it that it does not grow without end.
+  ReceiveQueue queue_{std::numeric_limits<std::size_t>::max()};
   std::size_t queued_before_ = 0;  // of queue_, from hubs before this one
   Senders senders_;
   Statistics statistics_;
   std::uint64_t index_ = 0;      // of the delivery had last from this hub
   std::uint64_t announced_ = 0;  // losses seen as gaps in that
-  std::uint64_t lost_ = 0;       // not yet told with a frame
   std::uint64_t consumed_ = 0;
   std::uint64_t reported_ = 0;  // of consumed_, to this hub
   std::thread thread_;
@@ -116,30 +112,23 @@ class LocalBus final : public Bus {
 
 Transfer LocalBus::send(std::span<const Frame> frames, Timeout timeout) {
   check_sendable(frames);
-  const Deadline deadline(timeout);
-  std::size_t count = 0;
-  for (;;) {
-    {
-      const std::lock_guard lock(mutex_);
-      if (closed_) {
-        return {Result::closed, count};
-      }
-      count += offer(frames.subspan(count));
-      if (count == frames.size()) {
-        return {Result::ok, count};
-      }
-      if (cancelled_) {
-        return {Result::cancelled, count};
-      }
-      if (deadline.passed()) {
-        ++statistics_.send_timeouts;
-        return {Result::timeout, count};
-      }
-      ++statistics_.send_waits;
-      sendable_.clear();
-    }
-    wait(sendable_, deadline);
-  }
+  return send_queued(
+      waits_, sendable_, frames, timeout,
+      [this](std::span<const Frame> rest) -> std::optional<std::size_t> {
+        const std::lock_guard lock(mutex_);
+        if (waits_.is_closed()) {
+          return std::nullopt;
+        }
+        const std::size_t offered = offer(rest);
+        if (offered < rest.size()) {
+          sendable_.clear();
+        }
+        return offered;
+      },
+      [this](bool gives_up) {
+        const std::lock_guard lock(mutex_);
+        ++(gives_up ? statistics_.send_timeouts : statistics_.send_waits);
+      });
 }
 
 // As many as fit in their lanes' windows, up to the first that does not.
@@ -173,40 +162,19 @@ void LocalBus::flush() {
 }
 
 Transfer LocalBus::receive(std::span<Received> frames, Timeout timeout) {
-  const Deadline deadline(timeout);
-  for (;;) {
-    {
-      const std::lock_guard lock(mutex_);
-      if (closed_) {
-        return {Result::closed, 0};
-      }
-      if (const std::size_t count = take(frames); count > 0) {
-        return {Result::ok, count};
-      }
-    }
-    if (frames.empty() || deadline.passed()) {
-      return {cancelled_ ? Result::cancelled : Result::timeout, 0};
-    }
-    if (cancelled_) {
-      return {Result::cancelled, 0};
-    }
-    wait(readable_, deadline);
-  }
+  return receive_queued(waits_, queue_.readable(), frames, timeout,
+                        [this](std::span<Received> room) -> std::optional<std::size_t> {
+                          const std::lock_guard lock(mutex_);
+                          return waits_.is_closed() ? std::nullopt : std::optional(take(room));
+                        });
 }
 
 std::size_t LocalBus::take(std::span<Received> frames) {
-  const std::size_t count = std::min(frames.size(), queue_.size());
-  const auto end = queue_.begin() + static_cast<std::ptrdiff_t>(count);
-  std::copy(queue_.begin(), end, frames.begin());
-  queue_.erase(queue_.begin(), end);
-  statistics_.received += count;
+  const std::size_t count = queue_.take(frames);
   const std::size_t before = std::min(count, queued_before_);
   queued_before_ -= before;
   consumed_ += count - before;
   report_consumed();
-  if (queue_.empty()) {
-    readable_.clear();
-  }
   return count;
 }
 
@@ -238,30 +206,20 @@ BusState LocalBus::state() const {
 Statistics LocalBus::statistics() const {
   const std::lock_guard lock(mutex_);
   Statistics statistics = statistics_;
+  queue_.add_to(statistics);
   if (connection_) {
     statistics.dropped += connection_->page.counters().dropped.load(std::memory_order_relaxed);
   }
   return statistics;
 }
 
-void LocalBus::cancel() noexcept {
-  cancelled_ = true;
-  cancel_.set();
-}
-
-void LocalBus::resume() noexcept {
-  cancelled_ = false;
-  cancel_.clear();
-}
-
 void LocalBus::close() noexcept {
   {
     std::unique_lock lock(mutex_);
-    if (closed_) {
+    if (waits_.is_closed()) {
       return;
     }
-    closed_ = true;
-    closed_flag_.set();
+    waits_.close();
     all_done_.wait_for(lock, close_time, [this] { return unacknowledged() == 0; });
     statistics_.unsent += unacknowledged();
   }
@@ -272,13 +230,6 @@ void LocalBus::close() noexcept {
     disconnect();
   }
   connector_.leave();
-}
-
-/// Returns when the flag is set or the time is up, and at once when cancelled or closed.
-void LocalBus::wait(const EventFlag& flag, const Deadline& deadline) const {
-  std::array<pollfd, 3> entries{
-      {{flag.fd(), POLLIN, 0}, {cancel_.fd(), POLLIN, 0}, {closed_flag_.fd(), POLLIN, 0}}};
-  static_cast<void>(::poll(entries.data(), entries.size(), deadline.poll_ms()));
 }
 
 void LocalBus::run() {
@@ -350,17 +301,14 @@ bool LocalBus::take_delivery(const Deliver& deliver) {
   const std::uint64_t gap = deliver.index - index_ - 1;
   index_ = deliver.index;
   announced_ += gap;
-  lost_ += gap;
+  queue_.lose(gap);
   if (!senders_.is_new(deliver.sender, lane_of(*frame), deliver.sequence)) {
     ++statistics_.duplicates;
     ++consumed_;
     return true;
   }
   const Timestamp time{std::chrono::nanoseconds(deliver.time_ns)};
-  queue_.push_back({*frame, time, std::exchange(lost_, 0)});
-  if (queue_.size() == 1) {
-    readable_.set();
-  }
+  queue_.put(*frame, time);
   return true;
 }
 
@@ -386,7 +334,7 @@ void LocalBus::disconnect() {
   const std::uint64_t lost = counters.dropped.load(std::memory_order_relaxed) +
                              counters.at_risk.load(std::memory_order_relaxed);
   statistics_.dropped += lost;
-  lost_ += lost - std::min(lost, announced_);
+  queue_.lose(lost - std::min(lost, announced_));
   connection_.reset();
 }
 

@@ -25,16 +25,15 @@
 #include <type_traits>
 #include <vector>
 
+#include "lanes.hpp"
+
 namespace roio::local {
 
 inline constexpr std::uint16_t protocol_version = 1;
 inline constexpr std::array<char, 4> magic = {'R', 'O', 'I', 'O'};
 inline constexpr std::size_t max_filters = 512;  // as many as SocketCAN takes
 
-/// Frames keep their order within a lane; those in the urgent lane pass the others.
-inline constexpr std::size_t lane_count = 2;
-inline constexpr std::size_t urgent_lane = 0;
-inline constexpr std::size_t normal_lane = 1;
+/// As the hub has it, for which a remote frame is never urgent.
 std::size_t lane_of(const Frame& frame) noexcept;
 
 enum class RecordType : std::uint8_t {

@@ -2,9 +2,7 @@
 
 #include <algorithm>
 #include <array>
-#include <atomic>
 #include <condition_variable>
-#include <deque>
 #include <mutex>
 #include <roio/bridge.hpp>
 #include <roio/error.hpp>
@@ -17,6 +15,8 @@
 #include "deadline.hpp"
 #include "frame_check.hpp"
 #include "local_thread.hpp"
+#include "queued_calls.hpp"
+#include "receive_queue.hpp"
 #include "serial_finder.hpp"
 #include "serial_nonce.hpp"
 #include "serial_ports.hpp"
@@ -155,11 +155,11 @@ class SerialBus final : public Bus, public Bridge {
   Transfer send(std::span<const Frame> frames, Timeout timeout) override;
   Transfer receive(std::span<Received> frames, Timeout timeout) override;
   void set_filters(std::span<const SocketCanFilter> filters) override;
-  [[nodiscard]] int fd() const noexcept override { return readable_.fd(); }
+  [[nodiscard]] int fd() const noexcept override { return queue_.readable().fd(); }
   [[nodiscard]] BusState state() const override;
   [[nodiscard]] Statistics statistics() const override;
-  void cancel() noexcept override;
-  void resume() noexcept override;
+  void cancel() noexcept override { waits_.cancel(); }
+  void resume() noexcept override { waits_.resume(); }
   void close() noexcept override;
   [[nodiscard]] const std::string& name() const noexcept override { return name_; }
 
@@ -179,7 +179,6 @@ class SerialBus final : public Bus, public Bridge {
 
   // The caller holds mutex_ for these.
   [[nodiscard]] bool is_ready() const { return session_.phase() == SerialSession::Phase::ready; }
-  std::size_t take(std::span<Received> frames);
   void flush();
   void deliver();
   void enqueue(const Frame& frame, Timestamp time);
@@ -196,19 +195,13 @@ class SerialBus final : public Bus, public Bridge {
   void serve();
   void reopen();
 
-  void wait(const EventFlag& flag, const Deadline& deadline) const;
-
   const std::string name_;
   const std::string path_;
   const bool error_frames_;
-  EventFlag readable_;  // frames are queued
   EventFlag sendable_;  // room may have come since send() found none
-  EventFlag cancel_;
-  EventFlag closed_flag_;
   EventFlag stop_;
   EventFlag wake_;  // the serving thread is to look at the session
-  std::atomic<bool> cancelled_{false};
-  std::atomic<bool> closed_{false};
+  Waits waits_;
 
   mutable std::mutex mutex_;
   std::condition_variable changed_;  // anything that somebody may wait for
@@ -217,8 +210,7 @@ class SerialBus final : public Bus, public Bridge {
   std::optional<SerialPort> port_;  // replaced by the serving thread only
   bool port_failed_ = false;
   bool was_ready_ = false;  // when last looked at
-  std::deque<Received> queue_;
-  std::uint64_t lost_ = 0;            // not yet told with a frame
+  ReceiveQueue queue_{receive_capacity};
   std::uint64_t lost_before_us_ = 0;  // of the session's count, before open() returned
   std::size_t waiting_seen_ = 0;      // in the session
   Time awake_at_{0};                  // the serving thread, if nothing else wakes it
@@ -246,20 +238,17 @@ void SerialBus::await_session(Timeout timeout) {
   static_cast<void>(session_.take_arrived());
   session_.forget_losses();
   lost_before_us_ = session_.lost();
-  queue_.clear();
-  readable_.clear();
-  lost_ = 0;
+  queue_.forget();
   statistics_ = {};
 }
 
 void SerialBus::close() noexcept {
   {
     Lock lock(mutex_);
-    if (closed_) {
+    if (waits_.is_closed()) {
       return;
     }
-    closed_ = true;
-    closed_flag_.set();
+    waits_.close();
     changed_.notify_all();
     changed_.wait_for(lock, close_time, [this] { return session_.all_done(); });
     session_.drop_waiting();
@@ -281,34 +270,26 @@ void SerialBus::end_thread() {
 
 Transfer SerialBus::send(std::span<const Frame> frames, Timeout timeout) {
   check_sendable(frames);
-  const Deadline deadline(timeout);
-  std::size_t count = 0;
-  for (;;) {
-    {
-      const std::lock_guard lock(mutex_);
-      if (closed_) {
-        return {Result::closed, count};
-      }
-      const std::size_t offered = session_.offer(frames.subspan(count), steady_now());
-      statistics_.sent += offered;
-      count += offered;
-      waiting_seen_ = session_.waiting();
-      flush();
-      if (count == frames.size()) {
-        return {Result::ok, count};
-      }
-      if (cancelled_) {
-        return {Result::cancelled, count};
-      }
-      if (deadline.passed()) {
-        ++statistics_.send_timeouts;
-        return {Result::timeout, count};
-      }
-      ++statistics_.send_waits;
-      sendable_.clear();
-    }
-    wait(sendable_, deadline);
-  }
+  return send_queued(
+      waits_, sendable_, frames, timeout,
+      [this](std::span<const Frame> rest) -> std::optional<std::size_t> {
+        const std::lock_guard lock(mutex_);
+        if (waits_.is_closed()) {
+          return std::nullopt;
+        }
+        const std::size_t offered = session_.offer(rest, steady_now());
+        statistics_.sent += offered;
+        waiting_seen_ = session_.waiting();
+        flush();
+        if (offered < rest.size()) {
+          sendable_.clear();
+        }
+        return offered;
+      },
+      [this](bool gives_up) {
+        const std::lock_guard lock(mutex_);
+        ++(gives_up ? statistics_.send_timeouts : statistics_.send_waits);
+      });
 }
 
 /// What the session has for the port; what goes by time, the serving thread has to know of.
@@ -320,40 +301,12 @@ void SerialBus::flush() {
 }
 
 Transfer SerialBus::receive(std::span<Received> frames, Timeout timeout) {
-  const Deadline deadline(timeout);
-  for (;;) {
-    {
-      const std::lock_guard lock(mutex_);
-      if (closed_) {
-        return {Result::closed, 0};
-      }
-      if (const std::size_t count = take(frames); count > 0) {
-        return {Result::ok, count};
-      }
-    }
-    if (frames.empty() || deadline.passed()) {
-      return {cancelled_ ? Result::cancelled : Result::timeout, 0};
-    }
-    if (cancelled_) {
-      return {Result::cancelled, 0};
-    }
-    wait(readable_, deadline);
-  }
-}
-
-std::size_t SerialBus::take(std::span<Received> frames) {
-  const std::size_t count = std::min(frames.size(), queue_.size());
-  const auto end = queue_.begin() + static_cast<std::ptrdiff_t>(count);
-  std::copy(queue_.begin(), end, frames.begin());
-  statistics_.received +=
-      static_cast<std::uint64_t>(std::count_if(queue_.begin(), end, [](const Received& received) {
-        return received.frame.kind != FrameKind::error;
-      }));
-  queue_.erase(queue_.begin(), end);
-  if (queue_.empty()) {
-    readable_.clear();
-  }
-  return count;
+  return receive_queued(waits_, queue_.readable(), frames, timeout,
+                        [this](std::span<Received> room) -> std::optional<std::size_t> {
+                          const std::lock_guard lock(mutex_);
+                          return waits_.is_closed() ? std::nullopt
+                                                    : std::optional(queue_.take(room));
+                        });
 }
 
 void SerialBus::set_filters(std::span<const SocketCanFilter> filters) {
@@ -382,28 +335,12 @@ BusState SerialBus::state() const {
 Statistics SerialBus::statistics() const {
   const std::lock_guard lock(mutex_);
   Statistics statistics = statistics_;
+  queue_.add_to(statistics);
   const DownFrames::Counters& down = session_.down();
   statistics.dropped += session_.lost() - lost_before_us_;
   statistics.resent = down.resent;
   statistics.unsent = down.not_sent + down.unknown + down.dropped;
   return statistics;
-}
-
-void SerialBus::cancel() noexcept {
-  cancelled_ = true;
-  cancel_.set();
-}
-
-void SerialBus::resume() noexcept {
-  cancelled_ = false;
-  cancel_.clear();
-}
-
-/// Returns when the flag is set or the time is up, and at once when cancelled or closed.
-void SerialBus::wait(const EventFlag& flag, const Deadline& deadline) const {
-  std::array<pollfd, 3> entries{
-      {{flag.fd(), POLLIN, 0}, {cancel_.fd(), POLLIN, 0}, {closed_flag_.fd(), POLLIN, 0}}};
-  static_cast<void>(::poll(entries.data(), entries.size(), deadline.poll_ms()));
 }
 
 // --- the serving thread --------------------------------------------------------------------------
@@ -473,7 +410,7 @@ void SerialBus::follow_session() {
 
 void SerialBus::deliver() {
   for (const SerialSession::Arrived& arrived : session_.take_arrived()) {
-    lost_ += arrived.lost_before;
+    queue_.lose(arrived.lost_before);
     if (passes(arrived.frame)) {
       enqueue(arrived.frame, wall_clock_.at(arrived.time));
     }
@@ -481,17 +418,8 @@ void SerialBus::deliver() {
 }
 
 void SerialBus::enqueue(const Frame& frame, Timestamp time) {
-  if (closed_) {
-    return;
-  }
-  if (queue_.size() >= receive_capacity) {
-    ++statistics_.dropped;
-    ++lost_;
-    return;
-  }
-  queue_.push_back({frame, time, std::exchange(lost_, 0)});
-  if (queue_.size() == 1) {
-    readable_.set();
+  if (!waits_.is_closed()) {
+    queue_.put(frame, time);
   }
 }
 

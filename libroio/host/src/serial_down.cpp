@@ -1,18 +1,9 @@
 #include "serial_down.hpp"
 
 #include <algorithm>
-#include <roio/header.hpp>
 
 namespace roio::serial {
 namespace {
-
-constexpr std::size_t urgent_lane = 0;
-constexpr std::size_t normal_lane = 1;
-
-std::size_t lane_of(const Frame& frame) {
-  return is_extended(frame.kind) && unpack_id(frame.id).priority == Priority::urgent ? urgent_lane
-                                                                                     : normal_lane;
-}
 
 constexpr std::size_t around = 1 + frame_head_down + check_length + 1;
 constexpr std::size_t max_record_of_frame = around + max_data_length;
@@ -30,7 +21,7 @@ Outcome outcome_of(std::uint32_t slots, std::size_t slot) {
 std::size_t DownFrames::offer(std::span<const Frame> frames) {
   std::size_t count = 0;
   for (const Frame& frame : frames) {
-    auto& lane = lanes_.at(lane_of(frame));
+    auto& lane = lanes_.at(lane_in_driver(frame));
     if (lane.size() >= lane_capacity) {
       break;
     }

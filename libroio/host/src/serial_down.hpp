@@ -10,6 +10,8 @@
 #include <roio/serial_protocol.hpp>
 #include <span>
 
+#include "lanes.hpp"
+
 namespace roio::serial {
 
 /// Frames on their way to the bridge: they wait in two lanes until there is room in the window;
@@ -76,7 +78,7 @@ class DownFrames {
   bool settle(Slot& slot, Outcome outcome);
   std::deque<Frame>* waiting_lane();
 
-  std::array<std::deque<Frame>, 2> lanes_;  // urgent, normal
+  std::array<std::deque<Frame>, lane_count> lanes_;
   std::array<Slot, window> slots_;
   std::size_t pending_ = 0;     // of slots_
   std::uint64_t taken_ = 0;     // by the bridge: all before this number

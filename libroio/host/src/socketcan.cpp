@@ -13,7 +13,7 @@
 #include "socketcan_link.hpp"
 #include "socketcan_receive.hpp"
 #include "socketcan_transmit.hpp"
-#include "socketcan_wait.hpp"
+#include "waits.hpp"
 
 namespace roio {
 namespace {
@@ -86,7 +86,7 @@ class SocketCanBus final : public Bus {
  private:
   // Looking at the interface takes note of what it finds.
   mutable socketcan::Link link_;
-  socketcan::Waits waits_;
+  Waits waits_;
   UniqueFd readable_;
   socketcan::Receiver receiver_;
   socketcan::Transmitter transmitter_;

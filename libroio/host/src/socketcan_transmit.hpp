@@ -14,7 +14,7 @@
 
 #include "deadline.hpp"
 #include "socketcan_link.hpp"
-#include "socketcan_wait.hpp"
+#include "waits.hpp"
 
 namespace roio::socketcan {
 

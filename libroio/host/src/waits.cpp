@@ -1,4 +1,4 @@
-#include "socketcan_wait.hpp"
+#include "waits.hpp"
 
 #include <poll.h>
 
@@ -9,7 +9,7 @@
 #include <ctime>
 #include <system_error>
 
-namespace roio::socketcan {
+namespace roio {
 namespace {
 
 timespec to_timespec(Timeout timeout) {
@@ -46,4 +46,4 @@ Waits::Woken Waits::wait(For first, For second, Timeout timeout) const {
   return {ready > 0 ? Result::ok : Result::timeout, entries[1].revents != 0};
 }
 
-}  // namespace roio::socketcan
+}  // namespace roio

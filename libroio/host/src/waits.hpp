@@ -1,21 +1,30 @@
-#ifndef ROIO_SOCKETCAN_WAIT_HPP
-#define ROIO_SOCKETCAN_WAIT_HPP
+#ifndef ROIO_WAITS_HPP
+#define ROIO_WAITS_HPP
 
 #include <atomic>
 #include <roio/bus.hpp>
 
 #include "fd.hpp"
 
-namespace roio::socketcan {
+namespace roio {
 
 /// Waits that another thread or a signal handler can end.
 class Waits {
  public:
-  void cancel() noexcept { cancelled_.set(); }
-  void resume() noexcept { cancelled_.clear(); }
+  void cancel() noexcept {
+    is_cancelled_.store(true, std::memory_order_release);
+    cancelled_.set();
+  }
+  void resume() noexcept {
+    is_cancelled_.store(false, std::memory_order_release);
+    cancelled_.clear();
+  }
   void close() noexcept {
     is_closed_.store(true, std::memory_order_release);
     closed_.set();
+  }
+  [[nodiscard]] bool is_cancelled() const noexcept {
+    return is_cancelled_.load(std::memory_order_acquire);
   }
   [[nodiscard]] bool is_closed() const noexcept {
     return is_closed_.load(std::memory_order_acquire);
@@ -38,9 +47,10 @@ class Waits {
  private:
   EventFlag cancelled_;
   EventFlag closed_;
+  std::atomic<bool> is_cancelled_{false};
   std::atomic<bool> is_closed_{false};
 };
 
-}  // namespace roio::socketcan
+}  // namespace roio
 
 #endif
