@@ -117,6 +117,25 @@ TEST(SpiBudget, SendingFramesThatFollowOneAnother) {
   EXPECT_EQ(rig.spent(), Cost(2, 1)) << "full until the second has gone, too";
 }
 
+struct BackToBack : TestTraits {
+  static constexpr bool back_to_back = true;
+};
+
+TEST(SpiBudget, BackToBackTwoBytesMoreForTheBuffersPriority) {
+  Rig<false, 0, 0, BackToBack> rig;
+  rig.begin();
+  ASSERT_EQ(rig.can.send(numbered(1, 8)), Status::ok);
+  EXPECT_EQ(rig.spent(), Cost(17, 2));
+  rig.mark();
+  ASSERT_EQ(rig.can.send(numbered(2, 8)), Status::ok);
+  EXPECT_EQ(rig.spent(), Cost(2 + 17, 1 + 2));
+  rig.bus.run_for(microseconds(350));  // the first has gone, the second is on the wire
+  ASSERT_EQ(rig.can.poll(), Status::ok);
+  rig.mark();
+  EXPECT_EQ(rig.can.send(numbered(3, 8)), Status::ok);
+  EXPECT_EQ(rig.spent(), Cost(2 + 17, 1 + 2));
+}
+
 TEST(SpiBudget, SendingAsksTheChipOnlyWhenItMayBeFull) {
   Rig<> rig;
   rig.begin();

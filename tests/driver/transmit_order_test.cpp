@@ -2,10 +2,11 @@
 // of it is told truly.
 //
 // tests/mutation takes the driver's rules for that away one at a time, and sees these tests fail:
-//   the second frame goes behind the first               TransmitTrouble: contention
-//   buffer 1 waits until buffer 0 is empty, too          ManyInARow
-//   a buffer that is pending is left alone               ManyInARow
-//   buffer 2 is for urgent frames                        AnUrgentFrameIsNotHeldUp...
+//   the second frame goes behind the first               ManyInARow, with two places
+//   a buffer that is pending is left alone               the same
+//   buffer 2 is for urgent frames                        the same
+//   back to back, each pair goes behind the one before   BackToBackTrouble: contention
+//   back to back, the seventh waits for the sixth        ManyInARow, with six places
 //   urgent frames queue ahead of normal ones, and        UrgentFramesKeepTheirOrderAmongThemselves
 //   behind urgent ones
 //   a frame waits behind the queue                       TransmitTrouble: none
@@ -23,6 +24,26 @@ namespace {
 
 constexpr std::uint8_t queue = 32;
 using SendingRig = Rig<false, 0, queue>;
+
+struct BackToBack : TestTraits {
+  static constexpr bool back_to_back = true;
+};
+
+/// The driver with two places for normal frames, and with six.
+template <typename Traits>
+class TransmitOrderOf : public testing::Test {
+ protected:
+  using SendingRig = Rig<false, 0, queue, Traits>;
+};
+
+struct NameOfPlaces {
+  template <typename Traits>
+  static std::string GetName(int) {
+    return Traits::back_to_back ? "SixPlaces" : "TwoPlaces";
+  }
+};
+using AllPlaces = testing::Types<TestTraits, BackToBack>;
+TYPED_TEST_SUITE(TransmitOrderOf, AllPlaces, NameOfPlaces);
 
 std::vector<std::uint32_t> numbers_of(const std::vector<Frame>& frames) {
   std::vector<std::uint32_t> numbers;
@@ -49,9 +70,9 @@ void poll_until_idle(AnyRig& rig, sim::SimTime limit = std::chrono::seconds(1)) 
   EXPECT_EQ(rig.can.waiting() + rig.can.in_flight(), 0);
 }
 
-TEST(TransmitOrder, ManyInARow) {
+TYPED_TEST(TransmitOrderOf, ManyInARow) {
   for (std::uint32_t count = 1; count <= queue; ++count) {
-    SendingRig rig;
+    typename TestFixture::SendingRig rig;
     rig.begin();
     for (std::uint32_t i = 0; i < count; ++i) {
       ASSERT_EQ(rig.can.send(numbered(i), static_cast<std::uint8_t>(i)), Status::ok);
@@ -67,8 +88,8 @@ TEST(TransmitOrder, ManyInARow) {
   }
 }
 
-TEST(TransmitOrder, OneAfterAnotherWithoutAQueue) {
-  Rig<> rig;
+TYPED_TEST(TransmitOrderOf, OneAfterAnotherWithoutAQueue) {
+  Rig<false, 0, 0, TypeParam> rig;
   rig.begin();
   for (std::uint32_t i = 0; i < 300; ++i) {
     while (rig.can.send(numbered(i)) == Status::full) {
@@ -79,8 +100,8 @@ TEST(TransmitOrder, OneAfterAnotherWithoutAQueue) {
   EXPECT_EQ(numbers_of(rig.peer_received), counting(0, 300));
 }
 
-TEST(TransmitOrder, AnUrgentFrameGoesAheadOfTenThatWait) {
-  SendingRig rig;
+TYPED_TEST(TransmitOrderOf, AnUrgentFrameGoesAheadOfTenThatWait) {
+  typename TestFixture::SendingRig rig;
   rig.begin();
   for (std::uint32_t i = 0; i < 10; ++i) {
     ASSERT_EQ(rig.can.send(numbered(i)), Status::ok);
@@ -92,8 +113,8 @@ TEST(TransmitOrder, AnUrgentFrameGoesAheadOfTenThatWait) {
             (std::vector<std::uint32_t>{0, 100, 1, 2, 3, 4, 5, 6, 7, 8, 9}));
 }
 
-TEST(TransmitOrder, UrgentFramesKeepTheirOrderAmongThemselves) {
-  SendingRig rig;
+TYPED_TEST(TransmitOrderOf, UrgentFramesKeepTheirOrderAmongThemselves) {
+  typename TestFixture::SendingRig rig;
   rig.begin();
   for (std::uint32_t i = 0; i < 10; ++i) {
     ASSERT_EQ(rig.can.send(numbered(i)), Status::ok);
@@ -113,9 +134,9 @@ TEST(TransmitOrder, UrgentFramesKeepTheirOrderAmongThemselves) {
   EXPECT_EQ(std::count_if(sent.begin(), third, [](std::uint32_t n) { return n >= 100; }), 10);
 }
 
-TEST(TransmitOrder, AnUrgentFrameIsNotHeldUpByANormalOneThatKeepsLosing) {
+TYPED_TEST(TransmitOrderOf, AnUrgentFrameIsNotHeldUpByANormalOneThatKeepsLosing) {
   // Somebody sends, without end, what beats our normal frames and not our urgent one.
-  SendingRig rig;
+  typename TestFixture::SendingRig rig;
   rig.begin();
   const Frame stronger{0x08000001, FrameKind::extended, 8, {}};
   rig.peer.on_sent([&](const Frame&) { rig.peer.send(stronger); });
@@ -173,9 +194,10 @@ TEST(TransmitOrder, WithBufferZeroAlone) {
             (std::vector<std::uint32_t>{0, 100, 1, 2, 3, 4, 5, 6, 7, 8, 9}));
 }
 
-TEST(TransmitOrder, ABusyBusIsFilledButForOneGapInTwo) {
-  SendingRig rig;
-  rig.begin();
+/// Keeps the driver's queue full.
+/// @return how much of the time the bus was busy.
+template <typename AnyRig>
+double fill_bus(AnyRig& rig) {
   constexpr std::uint32_t count = 600;
   const sim::SimTime start = rig.bus.now();
   std::uint32_t next = 0;
@@ -184,11 +206,42 @@ TEST(TransmitOrder, ABusyBusIsFilledButForOneGapInTwo) {
       ++next;
     }
     rig.bus.run_for(microseconds(20));
-    ASSERT_EQ(rig.can.poll(), Status::ok);
+    EXPECT_EQ(rig.can.poll(), Status::ok);
   }
   EXPECT_EQ(numbers_of(rig.peer_received), counting(0, count));
-  const sim::SimTime busy = rig.bus.statistics().busy;
-  EXPECT_GT(busy, (rig.bus.now() - start) * 95 / 100);
+  return std::chrono::duration<double>(rig.bus.statistics().busy) /
+         std::chrono::duration<double>(rig.bus.now() - start);
+}
+
+TEST(TransmitOrder, ABusyBusIsFilledButForOneGapInTwo) {
+  SendingRig rig;
+  rig.begin();
+  EXPECT_GT(fill_bus(rig), 0.95);
+}
+
+TEST(TransmitOrder, BackToBackThereIsOneGapInSix) {
+  Rig<false, 0, queue, BackToBack> rig;
+  rig.begin();
+  EXPECT_GT(fill_bus(rig), 0.98);
+}
+
+TEST(TransmitOrder, BackToBackTheSeventhWaitsForTheSixth) {
+  Rig<false, 0, 0, BackToBack> rig;
+  rig.begin();
+  // Each of the first six enters while the one before it has just begun.
+  for (std::uint32_t i = 0; i < 6; ++i) {
+    EXPECT_EQ(rig.can.send(numbered(i)), Status::ok) << i;
+    while (rig.can.in_flight() > 1) {
+      rig.bus.run_for(microseconds(20));
+      ASSERT_EQ(rig.can.poll(), Status::ok);
+    }
+  }
+  EXPECT_EQ(rig.can.send(numbered(6)), Status::full);
+  EXPECT_EQ(rig.can.in_flight(), 1);
+  poll_until_idle(rig);
+  EXPECT_EQ(rig.can.send(numbered(6)), Status::ok);
+  poll_until_idle(rig);
+  EXPECT_EQ(numbers_of(rig.peer_received), counting(0, 7));
 }
 
 // --- against everything that can come between ----------------------------------------------------
@@ -207,9 +260,10 @@ void PrintTo(const Trouble& trouble, std::ostream* out) {
   *out << trouble.name;
 }
 
-class TransmitTrouble : public testing::TestWithParam<Trouble> {
+template <typename Traits>
+class TroubleOf : public testing::TestWithParam<Trouble> {
  protected:
-  TransmitTrouble() : generator_(seeded_generator()) {
+  TroubleOf() : generator_(seeded_generator()) {
     rig_.chip.on_sent([this](const Frame& frame) { sent_.push_back(frame); });
   }
 
@@ -320,56 +374,67 @@ class TransmitTrouble : public testing::TestWithParam<Trouble> {
               << rig_.chip.events().bus_offs << " times\n";
   }
 
+  void expect_each_sent_once_and_reported_truly() {
+    begin();
+    for (int round = 0; round < 6'000; ++round) {
+      for (std::uint32_t i = up_to(generator_, 3); i > 0; --i) {
+        ASSERT_NO_FATAL_FAILURE(submit());
+      }
+      make_trouble();
+      ASSERT_NO_FATAL_FAILURE(pass_time());
+    }
+    settle();
+    expect_truth();
+    EXPECT_GT(sent_.size(), 200U);
+    if (GetParam().bus_off) {
+      EXPECT_GT(rig_.chip.events().bus_offs, 0U);
+      EXPECT_GT(rig_.can.counters().bus_offs, 0U);
+    }
+    if (GetParam().aborts || GetParam().one_shot) {
+      EXPECT_GT(rig_.can.counters().not_sent, 0U);
+    }
+  }
+
+ private:
   std::mt19937 generator_;
-  SendingRig rig_;
+  Rig<false, 0, queue, Traits> rig_;
   std::vector<Frame> submitted_;
   std::vector<Frame> sent_;
   std::uint32_t number_ = 0;
 };
 
+class TransmitTrouble : public TroubleOf<TestTraits> {};
+class BackToBackTrouble : public TroubleOf<BackToBack> {};
+
 TEST_P(TransmitTrouble, EachFrameIsSentOnceAndReportedTruly) {
-  begin();
-  for (int round = 0; round < 6'000; ++round) {
-    for (std::uint32_t i = up_to(generator_, 3); i > 0; --i) {
-      ASSERT_NO_FATAL_FAILURE(submit());
-    }
-    make_trouble();
-    ASSERT_NO_FATAL_FAILURE(pass_time());
-  }
-  settle();
-  expect_truth();
-  EXPECT_GT(sent_.size(), 200U);
-  if (GetParam().bus_off) {
-    EXPECT_GT(rig_.chip.events().bus_offs, 0U);
-    EXPECT_GT(rig_.can.counters().bus_offs, 0U);
-  }
-  if (GetParam().aborts || GetParam().one_shot) {
-    EXPECT_GT(rig_.can.counters().not_sent, 0U);
-  }
+  expect_each_sent_once_and_reported_truly();
+}
+TEST_P(BackToBackTrouble, EachFrameIsSentOnceAndReportedTruly) {
+  expect_each_sent_once_and_reported_truly();
 }
 
-INSTANTIATE_TEST_SUITE_P(
-    All, TransmitTrouble,
-    testing::Values(
-        Trouble{.name = "none"}, Trouble{.name = "contention", .contention = true},
-        Trouble{.name = "bit_errors", .bit_errors = 0.0005},
-        Trouble{.name = "bit_errors_and_contention", .bit_errors = 0.0005, .contention = true},
-        Trouble{.name = "aborts", .aborts = true},
-        Trouble{.name = "aborts_and_contention", .contention = true, .aborts = true},
-        Trouble{.name = "bus_off", .bus_off = true},
-        Trouble{.name = "bus_off_and_aborts", .aborts = true, .bus_off = true},
-        Trouble{.name = "one_shot", .bit_errors = 0.0005, .contention = true, .one_shot = true},
-        Trouble{.name = "one_shot_and_aborts",
-                .bit_errors = 0.0005,
-                .contention = true,
-                .aborts = true,
-                .one_shot = true},
-        Trouble{.name = "everything",
-                .bit_errors = 0.0005,
-                .contention = true,
-                .aborts = true,
-                .bus_off = true}),
-    [](const auto& row) { return std::string(row.param.name); });
+const auto troubles = testing::Values(
+    Trouble{.name = "none"}, Trouble{.name = "contention", .contention = true},
+    Trouble{.name = "bit_errors", .bit_errors = 0.0005},
+    Trouble{.name = "bit_errors_and_contention", .bit_errors = 0.0005, .contention = true},
+    Trouble{.name = "aborts", .aborts = true},
+    Trouble{.name = "aborts_and_contention", .contention = true, .aborts = true},
+    Trouble{.name = "bus_off", .bus_off = true},
+    Trouble{.name = "bus_off_and_aborts", .aborts = true, .bus_off = true},
+    Trouble{.name = "one_shot", .bit_errors = 0.0005, .contention = true, .one_shot = true},
+    Trouble{.name = "one_shot_and_aborts",
+            .bit_errors = 0.0005,
+            .contention = true,
+            .aborts = true,
+            .one_shot = true},
+    Trouble{.name = "everything",
+            .bit_errors = 0.0005,
+            .contention = true,
+            .aborts = true,
+            .bus_off = true});
+constexpr auto name_of_trouble = [](const auto& row) { return std::string(row.param.name); };
+INSTANTIATE_TEST_SUITE_P(All, TransmitTrouble, troubles, name_of_trouble);
+INSTANTIATE_TEST_SUITE_P(All, BackToBackTrouble, troubles, name_of_trouble);
 
 // --- abort ---------------------------------------------------------------------------------------
 

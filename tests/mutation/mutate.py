@@ -23,7 +23,7 @@ OTHER = "receive_test.cpp"
 BEGIN = "begin_test.cpp"
 GUARD = 240  # seconds; a driver without its rules may hang
 
-# name: (what the driver no longer does, text of mcp2515_impl.hpp, what stands there instead,
+# name: (what the driver no longer does, text of one of its headers, what stands there instead,
 #        test file, tests that must fail)
 MUTATIONS = {
     "rxb1_is_older_when_rxb0_was_freed_beside_it": (
@@ -90,24 +90,25 @@ MUTATIONS = {
         RECEIVE, ["ReceiveOrder.EveryInterleavingWhilePolling"]),
     "the_second_frame_goes_behind_the_first": (
         "send a second frame from the buffer behind the first",
-        "== 0 ? first_buffer : second_buffer;",
-        "== 0 ? first_buffer : urgent_buffer;",
-        TRANSMIT, ["TransmitOrder.ManyInARow"]),
+        "first_buffer) ? second_buffer : first_buffer;",
+        "first_buffer) ? urgent_buffer : first_buffer;",
+        TRANSMIT, ["TransmitOrderOf/TwoPlaces.ManyInARow"]),
     "a_buffer_for_urgent_frames": (
         "keep buffer 2 for urgent frames",
-        "    return mcp2515::no_buffer;\n  }\n  return (pending_ &",
-        "    return (pending_ & 0x40U) == 0 ? urgent_buffer : mcp2515::no_buffer;\n  }\n  return (pending_ &",
-        TRANSMIT, ["TransmitOrder.ManyInARow"]),
+        "      return no_buffer;\n    }\n    return is_pending(pending, first",
+        "      return is_pending(pending, urgent_buffer) ? no_buffer : urgent_buffer;\n    }\n"
+        "    return is_pending(pending, first",
+        TRANSMIT, ["TransmitOrderOf/TwoPlaces.ManyInARow"]),
     "urgent_frames_enter_the_queue_ahead": (
         "queue an urgent frame ahead of the normal ones",
         "  if (is_urgent(frame)) {\n    while (place > 0) {",
         "  if (false) {\n    while (place > 0) {",
-        TRANSMIT, ["TransmitOrder.UrgentFramesKeepTheirOrderAmongThemselves"]),
+        TRANSMIT, ["TransmitOrderOf/TwoPlaces.UrgentFramesKeepTheirOrderAmongThemselves"]),
     "urgent_frames_keep_their_order_in_the_queue": (
         "queue an urgent frame behind the urgent ones",
         "      if (is_urgent(tx_queue_[ahead].frame)) {\n        break;\n      }\n",
         "",
-        TRANSMIT, ["TransmitOrder.UrgentFramesKeepTheirOrderAmongThemselves"]),
+        TRANSMIT, ["TransmitOrderOf/TwoPlaces.UrgentFramesKeepTheirOrderAmongThemselves"]),
     "a_frame_waits_behind_the_queue": (
         "let a frame wait while others of its priority are in the queue",
         "tx_queue_.empty() || (is_urgent(frame) && !is_urgent(tx_queue_.front().frame));",
@@ -115,9 +116,19 @@ MUTATIONS = {
         TRANSMIT, ["All/TransmitTrouble.EachFrameIsSentOnceAndReportedTruly/none"]),
     "a_pending_buffer_is_left_alone": (
         "leave a buffer alone that the chip is still to send",
-        "  if ((pending_ & QuickStatus::txreq(second_buffer)) != 0) {",
+        "    if (is_pending(pending, second_buffer)) {",
         "  if (false) {",
-        TRANSMIT, ["TransmitOrder.ManyInARow"]),
+        TRANSMIT, ["TransmitOrderOf/TwoPlaces.ManyInARow"]),
+    "a_place_once_passed_is_not_taken_again": (
+        "back to back, wait for both buffers after the last place",
+        "place_ == places || is_pending(pending, buffer)",
+        "is_pending(pending, buffer)",
+        TRANSMIT, ["TransmitOrderOf/SixPlaces.ManyInARow"]),
+    "each_pair_behind_the_pair_before": (
+        "back to back, send each pair with a lower priority",
+        "static_cast<uint8_t>(top - (place_ >> 1));",
+        "top;",
+        TRANSMIT, ["All/BackToBackTrouble.EachFrameIsSentOnceAndReportedTruly/contention"]),
     "what_became_of_it_is_read": (
         "read what became of a frame when it was taken back",
         "  if (!requests_.aborting() && !one_shot) {\n    return TxOutcome::sent;\n  }",
@@ -182,13 +193,13 @@ def write_mutated_headers(source, work, old, new):
     headers = source / "firmware/mcp2515/include/roio"
     mutated = work / "include/roio"
     mutated.mkdir(parents=True, exist_ok=True)
+    found = 0
     for header in headers.glob("*.hpp"):
         text = header.read_text()
-        if header.name == "mcp2515_impl.hpp":
-            if text.count(old) != 1:
-                fail(2, f"expected once in {header}, found {text.count(old)} times:\n{old}")
-            text = text.replace(old, new)
-        (mutated / header.name).write_text(text)
+        found += text.count(old)
+        (mutated / header.name).write_text(text.replace(old, new))
+    if found != 1:
+        fail(2, f"expected once in {headers}, found {found} times:\n{old}")
 
 
 def compile_tests(source, work, test_file):

@@ -37,6 +37,7 @@
 #include <roio/frame.hpp>
 #include <roio/header.hpp>
 #include <roio/mcp2515_frame.hpp>
+#include <roio/mcp2515_order.hpp>
 #include <roio/mcp2515_outcomes.hpp>
 #include <roio/mcp2515_queue.hpp>
 #include <roio/mcp2515_registers.hpp>
@@ -161,6 +162,9 @@ struct Mcp2515Traits {
   /// told to send while they receive (errata item 2). An urgent frame then waits for the one that
   /// the chip has.
   static constexpr bool only_buffer_0 = false;
+  /// Six normal frames follow one another without a gap before the chip runs empty, in place of
+  /// two: for a node that fills the bus. Costs 2 SPI bytes more with each frame.
+  static constexpr bool back_to_back = false;
   /// Whether anybody wants to know what became of each frame. If not, there are no tokens, no
   /// abort() and no one-shot mode, and the driver does not ask the chip just for that.
   static constexpr bool reports_outcomes = false;
@@ -297,12 +301,13 @@ class Mcp2515 {
   using Transaction = typename Port::Transaction;
 
   using Waiting = mcp2515::Waiting<Traits::reports_outcomes>;
-  using Requests = mcp2515::Requests<Traits::reports_outcomes>;
-
-  // Transmit buffers: 2 is for urgent frames, 1 and 0 for normal ones. By their bits in RTS.
-  static constexpr uint8_t urgent_buffer = 4;
-  static constexpr uint8_t first_buffer = 2;
-  static constexpr uint8_t second_buffer = 1;
+  static_assert(!(Traits::only_buffer_0 && Traits::back_to_back),
+                "with buffer 0 alone nothing goes back to back");
+  using Order = mcp2515::TxOrder<Traits::only_buffer_0  ? mcp2515::TxPlaces::one
+                                 : Traits::back_to_back ? mcp2515::TxPlaces::six
+                                                        : mcp2515::TxPlaces::two>;
+  /// Bases, since most often these are empty.
+  struct Requests : mcp2515::Requests<Traits::reports_outcomes>, Order {};
 
   static bool is_urgent(const Mcp2515Frame& frame) {
     return (frame.bytes[0] & mcp2515::priority_bit) == 0 &&
@@ -345,8 +350,8 @@ class Mcp2515 {
   bool give_to_chip(const Mcp2515Frame& frame, uint8_t token);
   Status enqueue(const Mcp2515Frame& frame, uint8_t token);
   void pump();
-  uint8_t choose_buffer(bool urgent) const;
   bool load(const Mcp2515Frame& frame, uint8_t token);
+  Order& order() { return requests_; }
   void settle(uint8_t quick);
   TxOutcome outcome_of(uint8_t buffer);
   void end(uint8_t requests, TxOutcome outcome);

@@ -12,13 +12,10 @@
 namespace roio {
 
 namespace mcp2515 {
-constexpr uint8_t no_buffer = 0;
 constexpr uint16_t pause_us = 200;  ///< 128 clocks (8.1) of any oscillator above 640 kHz.
 constexpr uint8_t pauses = 250;     ///< 50 ms: one frame at 5 kbit/s, and 11 bits.
 constexpr uint8_t calls_between_checks = 64;
 constexpr uint8_t calls_at_most = 192;  ///< Where there is always a frame to be read.
-/// Any TXP will do, if it is the same for all; but not the 0 of a line that says nothing.
-constexpr uint8_t request_level = 2;
 
 /// Sent from the chip to itself to time its oscillator; no five equal bits up to the CRC.
 constexpr uint32_t clock_frame_id = UINT32_C(0x0AAAAAAA);
@@ -127,9 +124,10 @@ ROIO_MCP2515_MEMBER(bool)::configure(const Mcp2515Config& config) {
   constexpr uint8_t rx0 = RxControl::by_filters | RxControl::rollover;
   write_register(Register::rxb0ctrl, rx0);
   bool right = (read_register(Register::rxb0ctrl) & RxControl::settings) == rx0;
-  for (uint8_t buffer = urgent_buffer; Traits::reports_outcomes && buffer != 0; buffer >>= 1) {
-    write_register(mcp2515::txbctrl(buffer), mcp2515::request_level);
-    right = right && read_register(mcp2515::txbctrl(buffer)) == mcp2515::request_level;
+  for (uint8_t buffer = mcp2515::urgent_buffer; Traits::reports_outcomes && buffer != 0;
+       buffer >>= 1) {
+    write_register(mcp2515::txbctrl(buffer), order().level_of(buffer));
+    right = right && read_register(mcp2515::txbctrl(buffer)) == order().level_of(buffer);
   }
   right = right && exchange_setup(config) == 0;
   if (Port::has_interrupt_line) {
@@ -252,7 +250,7 @@ ROIO_MCP2515_MEMBER(Status)::check_clock(const Mcp2515Config& config, uint32_t o
 
 /// One and the same frame into all three transmit buffers.
 ROIO_MCP2515_MEMBER(void)::load_clock_frames() {
-  for (uint8_t buffer = urgent_buffer; buffer != 0; buffer >>= 1) {
+  for (uint8_t buffer = mcp2515::urgent_buffer; buffer != 0; buffer >>= 1) {
     Frame frame = {mcp2515::clock_frame_id, FrameKind::extended, max_data_length, {}};
     for (uint8_t& byte : frame.data) {
       byte = mcp2515::clock_frame_data;
@@ -504,35 +502,22 @@ ROIO_MCP2515_MEMBER(void)::pump() {
   }
 }
 
-/// Which transmit buffer the next frame may go to.
-///
-/// All have the same TXP, and among equals the chip sends the highest buffer first. So urgent
-/// frames have buffer 2: there one never waits for a normal one to win the bus. A normal frame goes
-/// to buffer 1, and one that comes while that is under way to buffer 0, behind it. One that went to
-/// buffer 1 now would overtake it: the next waits until both are gone.
-ROIO_MCP2515_MEMBER(uint8_t)::choose_buffer(bool urgent) const {
-  if (Traits::only_buffer_0) {
-    return pending_ == 0 ? second_buffer : mcp2515::no_buffer;
-  }
-  if (urgent) {
-    return (pending_ & QuickStatus::txreq(urgent_buffer)) == 0 ? urgent_buffer : mcp2515::no_buffer;
-  }
-  if ((pending_ & QuickStatus::txreq(second_buffer)) != 0) {
-    return mcp2515::no_buffer;
-  }
-  return (pending_ & QuickStatus::txreq(first_buffer)) == 0 ? first_buffer : second_buffer;
-}
-
 ROIO_MCP2515_MEMBER(bool)::load(const Mcp2515Frame& frame, uint8_t token) {
   const bool accepts = !requests_.aborting();
-  const uint8_t buffer = accepts ? choose_buffer(is_urgent(frame)) : mcp2515::no_buffer;
+  const uint8_t buffer = accepts ? order().choose(is_urgent(frame), pending_) : mcp2515::no_buffer;
   if (buffer == mcp2515::no_buffer) {
     return false;
   }
   const uint8_t length = Traits::all_kinds && frame.is_remote() ? uint8_t{0} : frame.length();
   {
     Transaction transaction(port_);
-    transaction.exchange(mcp2515::load_tx(buffer));
+    if (Traits::back_to_back) {
+      // TXBnCTRL is in front of the frame.
+      open(transaction, Instruction::write, mcp2515::txbctrl(buffer));
+      transaction.exchange(order().level_of(buffer));
+    } else {
+      transaction.exchange(mcp2515::load_tx(buffer));
+    }
     transaction.send(frame.bytes, static_cast<uint8_t>(Mcp2515Frame::head_length + length));
     // By RTS, never by writing TXREQ: errata item 5.
     transaction.restart();
@@ -566,8 +551,8 @@ ROIO_MCP2515_MEMBER(void)::end(uint8_t requests, TxOutcome outcome) {
     }
     return;
   }
-  uint8_t request = QuickStatus::txreq(urgent_buffer);
-  for (uint8_t buffer = urgent_buffer; buffer != 0; buffer >>= 1, request >>= 2) {
+  uint8_t request = QuickStatus::txreq(mcp2515::urgent_buffer);
+  for (uint8_t buffer = mcp2515::urgent_buffer; buffer != 0; buffer >>= 1, request >>= 2) {
     if ((requests & request) != 0) {
       report(requests_.token_of(buffer),
              outcome == TxOutcome::unknown ? outcome : outcome_of(buffer));
@@ -583,7 +568,7 @@ ROIO_MCP2515_MEMBER(TxOutcome)::outcome_of(uint8_t buffer) {
     return TxOutcome::sent;
   }
   const uint8_t control = read_register(mcp2515::txbctrl(buffer));
-  if ((control & TxControl::fixed) != mcp2515::request_level) {
+  if ((control & TxControl::fixed) != order().level_of(buffer)) {
     return TxOutcome::unknown;  // that is no answer of a chip that has ended this request
   }
   if ((control & (TxControl::lost_arbitration | TxControl::error)) != 0 && one_shot) {
