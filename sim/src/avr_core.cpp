@@ -282,6 +282,16 @@ avr_int_vector_t& AvrCore::vector(std::uint16_t enable_register, unsigned enable
                          hexadecimal(enable_register));
 }
 
+avr_int_vector_t& AvrCore::vector(unsigned number) const {
+  const avr_int_table_t& table = avr_->interrupts;
+  for (int i = 0; i < table.vector_count; ++i) {
+    if (table.vector[i]->vector == number) {
+      return *table.vector[i];
+    }
+  }
+  throw std::logic_error("this libsimavr lacks interrupt " + std::to_string(number));
+}
+
 // simavr queues a vector anew each time, also when the one that was cleared is still in its queue;
 // firmware that polls with interrupts off would fill it.
 void AvrCore::raise(avr_int_vector_t& vector) const {

@@ -52,6 +52,8 @@ class AvrCore {
   [[nodiscard]] std::uint8_t& data(std::uint16_t address) const { return avr_->data[address]; }
   /// The interrupt that this bit enables. It must exist.
   [[nodiscard]] avr_int_vector_t& vector(std::uint16_t enable_register, unsigned enable_bit) const;
+  /// The interrupt with this number in the MCU's table. It must exist.
+  [[nodiscard]] avr_int_vector_t& vector(unsigned number) const;
   /// Sets the vector's flag, and asks for the interrupt if it is enabled.
   void raise(avr_int_vector_t& vector) const;
   /// Clears both.

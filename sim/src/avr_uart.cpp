@@ -66,13 +66,13 @@ void AvrUart::reset() {
   next_out_.reset();
   flush();
   // A restart has cleared simavr's timers.
-  counters_.unheard += shifting_in_ ? 1U : 0U;
+  counters().unheard += shifting_in_ ? 1U : 0U;
   shifting_in_.reset();
   line_busy_ = false;
   core_.cancel<&AvrUart::sent>(*this);
   core_.cancel<&AvrUart::line_event>(*this);
   line_free_ = core_.cycle();
-  receive({});
+  listen();
 }
 
 // --- registers -----------------------------------------------------------------------------------
@@ -102,7 +102,7 @@ AvrCore::Cycle AvrUart::frame_cycles() const {
   return bit_cycles() * (bits_before_stop() + (has(format_, two_stop_bits) ? 2U : 1U));
 }
 
-double AvrUart::bitrate_bps() const {
+std::optional<double> AvrUart::bitrate_bps() const {
   return static_cast<double>(AvrCore::clock_hz) / static_cast<double>(bit_cycles());
 }
 
@@ -154,20 +154,18 @@ void AvrUart::write_data(std::uint16_t /*address*/, std::uint8_t value) {
     next_out_ = value;
     core_.clear(empty_vector_);
   } else {
-    ++counters_.unsent;
+    ++counters().unsent;
   }
 }
 
 void AvrUart::start_sending(std::uint8_t byte, AvrCore::Cycle cycle) {
   shifting_out_ = true;
   out_end_ = cycle + frame_cycles();
-  if (sender_) {
-    sender_(out_end_, byte);
-  }
+  send(out_end_, byte);
 }
 
 AvrCore::Cycle AvrUart::sent(AvrCore::Cycle /*when*/) {
-  ++counters_.sent;
+  ++counters().sent;
   if (next_out_) {
     start_sending(*next_out_, out_end_);
     next_out_.reset();
@@ -183,6 +181,11 @@ AvrCore::Cycle AvrUart::sent(AvrCore::Cycle /*when*/) {
 
 void AvrUart::receive(std::span<const std::uint8_t> bytes) {
   line_.insert(line_.end(), bytes.begin(), bytes.end());
+  listen();
+}
+
+/// The next byte begins as soon as the line is free.
+void AvrUart::listen() {
   if (!line_busy_ && !line_.empty()) {
     line_busy_ = true;
     core_.at<&AvrUart::line_event>(std::max(core_.cycle() + 1, line_free_), *this);
@@ -210,7 +213,7 @@ void AvrUart::start_bit(AvrCore::Cycle when) {
   if (heard_ && held_) {
     held_.reset();
     overrun_ = true;
-    ++counters_.overruns;
+    ++counters().overruns;
   }
 }
 
@@ -218,7 +221,7 @@ void AvrUart::arrived() {
   const Received received{*shifting_in_, overrun_};
   shifting_in_.reset();
   if (!heard_ || !has(control_, rxen)) {
-    ++counters_.unheard;
+    ++counters().unheard;
     return;
   }
   overrun_ = false;
@@ -227,7 +230,7 @@ void AvrUart::arrived() {
     return;
   }
   buffer_.push_back(received);
-  ++counters_.received;
+  ++counters().received;
   core_.raise(received_vector_);
 }
 
@@ -241,7 +244,7 @@ std::uint8_t AvrUart::read_data(std::uint16_t /*address*/) {
   if (held_) {
     buffer_.push_back(*held_);
     held_.reset();
-    ++counters_.received;
+    ++counters().received;
   }
   if (!buffer_.empty()) {
     core_.raise(received_vector_);
@@ -250,7 +253,7 @@ std::uint8_t AvrUart::read_data(std::uint16_t /*address*/) {
 }
 
 void AvrUart::flush() {
-  counters_.unheard += held_ ? 1U : 0U;
+  counters().unheard += held_ ? 1U : 0U;
   buffer_.clear();
   held_.reset();
   overrun_ = false;

@@ -5,31 +5,22 @@
 
 #include <cstdint>
 #include <deque>
-#include <functional>
 #include <optional>
-#include <roio/sim/board.hpp>
-#include <span>
 
-#include "avr_core.hpp"
+#include "avr_serial.hpp"
 
 namespace roio::sim {
 
-class AvrUart {
+class AvrUart final : public AvrSerial {
  public:
-  /// Called when a byte begins on the wire, with the cycle of its last bit's end.
-  using Sender = std::function<void(AvrCore::Cycle, std::uint8_t)>;
-
   AvrUart(AvrCore& core, std::uint16_t base);
 
-  void on_send(Sender sender) { sender_ = std::move(sender); }
-  void receive(std::span<const std::uint8_t> bytes);
-  [[nodiscard]] std::size_t waiting() const { return line_.size(); }
-  [[nodiscard]] SerialCounters& counters() { return counters_; }
-  [[nodiscard]] const SerialCounters& counters() const { return counters_; }
-  [[nodiscard]] double bitrate_bps() const;
-  void reset();
-  /// An interrupt was entered: those of this UART last as long as their flag does.
-  void interrupt_entered(const avr_int_vector_t& vector);
+  void receive(std::span<const std::uint8_t> bytes) override;
+  [[nodiscard]] std::size_t waiting() const override { return line_.size(); }
+  [[nodiscard]] std::optional<double> bitrate_bps() const override;
+  bool hold(bool /*holds*/) override { return false; }
+  void reset() override;
+  void interrupt_entered(const avr_int_vector_t& vector) override;
 
  private:
   struct Received {
@@ -45,6 +36,7 @@ class AvrUart {
 
   void start_sending(std::uint8_t byte, AvrCore::Cycle cycle);
   AvrCore::Cycle sent(AvrCore::Cycle when);
+  void listen();
   AvrCore::Cycle line_event(AvrCore::Cycle when);
   void start_bit(AvrCore::Cycle when);
   void arrived();
@@ -76,8 +68,6 @@ class AvrUart {
   AvrCore::Cycle line_free_ = 0;
   std::deque<std::uint8_t> line_;  // waits for the line
   std::deque<Received> buffer_;    // the receiver's: two at most
-  SerialCounters counters_;
-  Sender sender_;
 };
 
 }  // namespace roio::sim

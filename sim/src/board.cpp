@@ -12,6 +12,7 @@
 #include "avr_spi.hpp"
 #include "avr_uart.hpp"
 #include "board_model.hpp"
+#include "usb_serial.hpp"
 
 namespace roio::sim {
 namespace {
@@ -85,7 +86,7 @@ class Board::Machine : public CanBus::Companion,
   [[nodiscard]] McuPin mcu_pin(int pin) const;
   [[nodiscard]] Pin& pin(int pin) { return pins_[index_of(mcu_pin(pin))]; }
   [[nodiscard]] std::size_t index_of(McuPin pin) const;
-  [[nodiscard]] AvrUart& uart(int number);
+  [[nodiscard]] AvrSerial& serial(int number) { return *serial_slot(number).line; }
   [[nodiscard]] unsigned adc_channel(int channel) const;
   void set_chip_fault(SpiWire::Fault fault);
   /// From outside; none: no longer.
@@ -101,12 +102,13 @@ class Board::Machine : public CanBus::Companion,
   std::uint64_t resets = 0;
   std::vector<Mcp2515Violation> violations;
   std::function<void(SimTime, std::uint8_t, std::uint8_t)> spi_listener;
-  struct Uart {
-    std::unique_ptr<AvrUart> uart;
+  struct Serial {
+    int number;
+    std::unique_ptr<AvrSerial> line;
     std::function<void(std::uint8_t)> listener;
-    double sent_bps = 0;  // of the byte that the listener had last
+    std::optional<double> sent_bps;  // of the byte that the listener had last
   };
-  [[nodiscard]] Uart& uart_slot(int number);
+  [[nodiscard]] Serial& serial_slot(int number);
 
  private:
   struct Edge {
@@ -114,6 +116,7 @@ class Board::Machine : public CanBus::Companion,
     bool selected;
   };
 
+  void add_serial(int number, std::unique_ptr<AvrSerial> line);
   void post(Cycle cycle, std::function<void()> action);
   void tell_trouble();
   [[nodiscard]] std::optional<Cycle> next_contact() const;
@@ -133,7 +136,7 @@ class Board::Machine : public CanBus::Companion,
   BoardOptions options_;
   SimTime origin_;
   std::vector<Pin> pins_;
-  std::vector<Uart> uarts_;
+  std::vector<Serial> serials_;
   std::optional<Edge> edge_;
   bool selected_ = false;       // as the program has it
   bool chip_selected_ = false;  // as the chip sees it
@@ -159,26 +162,16 @@ Board::Machine::Machine(CanBus& bus, BoardKind kind, const std::filesystem::path
   if (options.interrupt_pin) {
     (void)mcu_pin(*options.interrupt_pin);
   }
+  if (model_.has_usb) {
+    add_serial(0, std::make_unique<UsbSerial>(core));
+  }
   for (const McuUart& made : model_.uarts) {
-    uarts_.push_back({std::make_unique<AvrUart>(core, made.base), nullptr, 0});
-    Uart& slot = uarts_.back();
-    slot.uart->on_send([this, number = made.number](Cycle end, std::uint8_t byte) {
-      if (uart_slot(number).listener) {
-        const double bitrate_bps = uart(number).bitrate_bps();
-        post(end, [this, number, byte, bitrate_bps, era = era_] {
-          const auto listener = uart_slot(number).listener;
-          if (listener && era == era_) {
-            uart_slot(number).sent_bps = bitrate_bps;
-            listener(byte);
-          }
-        });
-      }
-    });
+    add_serial(made.number, std::make_unique<AvrUart>(core, made.base));
   }
   core.on_restart([this] { restarted(); });
   core.on_interrupt([this](const avr_int_vector_t& vector) {
-    for (const Uart& slot : uarts_) {
-      slot.uart->interrupt_entered(vector);
+    for (const Serial& slot : serials_) {
+      slot.line->interrupt_entered(vector);
     }
     interrupts.update();
   });
@@ -198,6 +191,22 @@ Board::Machine::Machine(CanBus& bus, BoardKind kind, const std::filesystem::path
   reach = silence;
   next = bus.now();
   bus.attach(*this);
+}
+
+void Board::Machine::add_serial(int number, std::unique_ptr<AvrSerial> line) {
+  line->on_send([this, number](Cycle end, std::uint8_t byte) {
+    if (serial_slot(number).listener) {
+      const std::optional<double> bitrate_bps = serial(number).bitrate_bps();
+      post(end, [this, number, byte, bitrate_bps, era = era_] {
+        const auto listener = serial_slot(number).listener;
+        if (listener && era == era_) {
+          serial_slot(number).sent_bps = bitrate_bps;
+          listener(byte);
+        }
+      });
+    }
+  });
+  serials_.push_back({number, std::move(line), nullptr, std::nullopt});
 }
 
 // --- in step with the bus ------------------------------------------------------------------------
@@ -277,8 +286,8 @@ void Board::Machine::restarted() {
   ++era_;
   spi.reset();
   adc.reset();
-  for (const Uart& slot : uarts_) {
-    slot.uart->reset();
+  for (const Serial& slot : serials_) {
+    slot.line->reset();
   }
   ports.reset();
   interrupts.reset();
@@ -407,17 +416,13 @@ void Board::Machine::pin_changed(McuPin changed, AvrPorts::Level level) {
   }
 }
 
-AvrUart& Board::Machine::uart(int number) {
-  return *uart_slot(number).uart;
-}
-
-Board::Machine::Uart& Board::Machine::uart_slot(int number) {
-  for (std::size_t i = 0; i < uarts_.size(); ++i) {
-    if (model_.uarts[i].number == number) {
-      return uarts_[i];
+Board::Machine::Serial& Board::Machine::serial_slot(int number) {
+  for (Serial& slot : serials_) {
+    if (slot.number == number) {
+      return slot;
     }
   }
-  throw std::invalid_argument(std::string("a ") + model_.name + " has no UART " +
+  throw std::invalid_argument(std::string("a ") + model_.name + " has no serial port " +
                               std::to_string(number));
 }
 
@@ -521,29 +526,36 @@ std::optional<double> Board::servo_angle(int pin) const {
   return pulse ? std::optional(sim::servo_angle(*pulse)) : std::nullopt;
 }
 
-void Board::on_serial(int uart, std::function<void(std::uint8_t)> listener) {
+void Board::on_serial(int port, std::function<void(std::uint8_t)> listener) {
   machine_->listened_to();
-  machine_->uart_slot(uart).listener = std::move(listener);
+  machine_->serial_slot(port).listener = std::move(listener);
 }
 
-void Board::serial_write(int uart, std::span<const std::uint8_t> bytes) {
-  machine_->uart(uart).receive(bytes);
+void Board::serial_write(int port, std::span<const std::uint8_t> bytes) {
+  machine_->serial(port).receive(bytes);
 }
 
-std::size_t Board::serial_waiting(int uart) const {
-  return machine_->uart(uart).waiting();
+std::size_t Board::serial_waiting(int port) const {
+  return machine_->serial(port).waiting();
 }
 
-const SerialCounters& Board::serial_counters(int uart) const {
-  return machine_->uart(uart).counters();
+void Board::serial_hold(int port, bool holds) {
+  if (!machine_->serial(port).hold(holds)) {
+    throw std::invalid_argument(name() + ": serial port " + std::to_string(port) +
+                                " is a UART, which nobody can hold");
+  }
 }
 
-double Board::serial_bitrate_bps(int uart) const {
-  return machine_->uart(uart).bitrate_bps();
+const SerialCounters& Board::serial_counters(int port) const {
+  return std::as_const(machine_->serial(port)).counters();
 }
 
-double Board::serial_sent_bitrate_bps(int uart) const {
-  return machine_->uart_slot(uart).sent_bps;
+std::optional<double> Board::serial_bitrate_bps(int port) const {
+  return machine_->serial(port).bitrate_bps();
+}
+
+std::optional<double> Board::serial_sent_bitrate_bps(int port) const {
+  return machine_->serial_slot(port).sent_bps;
 }
 
 const char* to_string(Board::State state) {

@@ -44,6 +44,7 @@ struct BoardModel {
   std::span<const std::uint8_t> analog_channels;  // the ADC's, by Arduino's
   std::span<const McuPort> ports;
   std::span<const McuUart> uarts;
+  bool has_usb;  // which is Arduino's Serial then, number 0
   std::span<const McuInterrupt> interrupts;
   McuPin ss;
   McuPin mosi;

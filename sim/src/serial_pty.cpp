@@ -14,6 +14,7 @@ namespace roio::sim {
 namespace {
 
 constexpr double bits_of_a_byte = 10;
+constexpr double usb_bps = 12e6;
 // So much more than an interval takes is kept waiting for the board. The rest stays in the
 // terminal, where its writer sees it.
 constexpr std::size_t bytes_ahead = 16;
@@ -108,7 +109,7 @@ class SerialPty::Line : public std::enable_shared_from_this<SerialPty::Line> {
       ++unheard_;
       return;
     }
-    const double bitrate_bps = board_.serial_sent_bitrate_bps(uart_);
+    const std::optional<double> bitrate_bps = board_.serial_sent_bitrate_bps(uart_);
     if (bitrate_bps != from_board_bps_) {
       hand_on();
       from_board_bps_ = bitrate_bps;
@@ -129,9 +130,9 @@ class SerialPty::Line : public std::enable_shared_from_this<SerialPty::Line> {
       return;
     }
     const auto terminal_bps = terminal_->bitrate_bps();
-    if (terminal_bps && !rates_match(*terminal_bps, from_board_bps_)) {
+    if (terminal_bps && from_board_bps_ && !rates_match(*terminal_bps, *from_board_bps_)) {
       garbled_ += from_board_.size();
-      from_board_ = sampled(from_board_, from_board_bps_, *terminal_bps);
+      from_board_ = sampled(from_board_, *from_board_bps_, *terminal_bps);
     }
     lost_ += from_board_.size() - terminal_->write(from_board_);
     from_board_.clear();
@@ -142,10 +143,10 @@ class SerialPty::Line : public std::enable_shared_from_this<SerialPty::Line> {
     if (!terminal_) {
       return;
     }
-    const double board_bps = board_.serial_bitrate_bps(uart_);
+    const std::optional<double> board_bps = board_.serial_bitrate_bps(uart_);
     const double seconds = std::chrono::duration<double>(interval_).count();
-    const auto most =
-        bytes_ahead + static_cast<std::size_t>(2 * seconds * board_bps / bits_of_a_byte);
+    const auto most = bytes_ahead + static_cast<std::size_t>(
+                                        2 * seconds * board_bps.value_or(usb_bps) / bits_of_a_byte);
     const std::size_t waiting = board_.serial_waiting(uart_);
     if (waiting >= most) {
       return;
@@ -156,9 +157,9 @@ class SerialPty::Line : public std::enable_shared_from_this<SerialPty::Line> {
       return;
     }
     const auto terminal_bps = terminal_->bitrate_bps();
-    if (terminal_bps && !rates_match(*terminal_bps, board_bps)) {
+    if (terminal_bps && board_bps && !rates_match(*terminal_bps, *board_bps)) {
       garbled_ += to_board_.size();
-      to_board_ = sampled(to_board_, *terminal_bps, board_bps);
+      to_board_ = sampled(to_board_, *terminal_bps, *board_bps);
     }
     board_.serial_write(uart_, to_board_);
   }
@@ -171,7 +172,7 @@ class SerialPty::Line : public std::enable_shared_from_this<SerialPty::Line> {
   std::string path_;
   TerminalLink link_;
   std::vector<std::uint8_t> from_board_;  // sent, and not handed on
-  double from_board_bps_ = 0;
+  std::optional<double> from_board_bps_;  // of these; none: USB
   std::vector<std::uint8_t> to_board_;
   std::uint64_t lost_ = 0;
   std::uint64_t unheard_ = 0;

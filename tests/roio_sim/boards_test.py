@@ -28,7 +28,7 @@ class ShowTest(SimTest):
         self.assertEqual((status, err), (0, ""))
         self.assertEqual(
             sorted(line for line in out.splitlines() if "serial" in line),
-            sorted(f"{name}: serial: node 2" for name in ("mega", "uno", "uno2", "uno3")),
+            ["mega: serial: node 2", "uno2: serial1: node 2", "uno3: serial: node 2", "uno: serial: node 2"],
         )
 
     def test_json_lines(self):
@@ -133,7 +133,7 @@ class CommandTest(SimTest):
         ("arm reset", 'no board "arm"; there is uno'),
         ("uno press 20", "a Uno has no pin 20"),
         ("uno analog A9 1", "a Uno has no analog input A9"),
-        ("uno serial1 hello", "a Uno has no UART 1"),
+        ("uno serial1 hello", "a Uno has no serial port 1"),
         ("uno unplug usb", '"uno unplug usb": expected nothing more, or serial, found "usb"'),
         ("uno plug serial 2", '"uno plug serial 2": expected nothing more, found "2"'),
         ("uno unplug serial", "uno: its serial port is no terminal; see --serial-pty"),

@@ -77,7 +77,7 @@ class BoardLine {
  private:
   [[nodiscard]] bool rates_match() const {
     const double rate_bps = session.line_rate_bps();
-    return std::abs(board.serial_bitrate_bps(0) - rate_bps) < 0.045 * rate_bps;
+    return std::abs(board.serial_bitrate_bps(0).value() - rate_bps) < 0.045 * rate_bps;
   }
   void hear(std::uint8_t byte) {
     std::optional<std::uint8_t> heard = byte;

@@ -40,8 +40,8 @@ struct SetAnalog {
   double volts = 0;
 };
 struct Serial {
-  std::optional<int> uart;  ///< None: the board's first.
-  std::string text;         ///< Without a line end.
+  int uart = 0;      ///< Arduino's Serial; 1 is Serial1.
+  std::string text;  ///< Without a line end.
 };
 struct Reset {};
 enum class Cable : std::uint8_t { chip, terminal };

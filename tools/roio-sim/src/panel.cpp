@@ -27,8 +27,9 @@ constexpr sim::SimTime press_time = 100ms;
 constexpr sim::SimTime unfinished_line_time = 200ms;
 constexpr std::size_t longest_line = 1024;
 
-int first_uart(sim::BoardKind kind) {
-  return kind == sim::BoardKind::leonardo ? 1 : 0;
+// Arduino's Serial has number 0, and a board's last SerialN this.
+int last_port(sim::BoardKind kind) {
+  return kind == sim::BoardKind::mega ? 3 : kind == sim::BoardKind::leonardo ? 1 : 0;
 }
 
 // Arduino's numbers of SS, MOSI, MISO and SCK.
@@ -74,7 +75,6 @@ Panel::Panel(sim::CanBus& bus, const BoardWish& wish, std::uint32_t bitrate_bps,
       bitrate_bps_(bitrate_bps),
       report_(report),
       board_(bus, wish.kind, wish.elf, board_options(wish)),
-      first_uart_(first_uart(wish.kind)),
       state_(can_state()),
       state_shown_(state_) {
   watch_pins(wish);
@@ -95,15 +95,14 @@ void Panel::watch_pins(const BoardWish& wish) {
 }
 
 void Panel::watch_serial(const BoardWish& wish) {
-  const int last_uart = wish.kind == sim::BoardKind::mega ? 3 : first_uart_;
-  for (int uart = first_uart_; uart <= last_uart; ++uart) {
-    if (uart == first_uart_ && wish.has_terminal) {
+  for (int port = 0; port <= last_port(wish.kind); ++port) {
+    if (port == 0 && wish.has_terminal) {
       terminal_link_ = wish.terminal_link;
-      terminal_ = std::make_unique<sim::SerialPty>(bus_, board_, uart,
+      terminal_ = std::make_unique<sim::SerialPty>(bus_, board_, port,
                                                    sim::SerialPtyOptions{.link = terminal_link_});
       show_terminal();
     } else {
-      board_.on_serial(uart, [this, uart](std::uint8_t byte) { serial_byte(uart, byte); });
+      board_.on_serial(port, [this, port](std::uint8_t byte) { serial_byte(port, byte); });
     }
   }
 }
@@ -180,7 +179,7 @@ void Panel::serial_byte(int uart, std::uint8_t byte) {
 }
 
 void Panel::end_line(int uart, Line& line) {
-  report_.serial(line.last, name(), uart, uart == first_uart_, line.text);
+  report_.serial(line.last, name(), uart, line.text);
   line.text.clear();
 }
 
@@ -280,7 +279,7 @@ void Panel::check(const Action& action) const {
   } else if (const auto* const analog = std::get_if<SetAnalog>(&action)) {
     static_cast<void>(board_.analog_pin(analog->channel));
   } else if (const auto* const serial = std::get_if<Serial>(&action)) {
-    static_cast<void>(board_.serial_waiting(serial->uart.value_or(first_uart_)));
+    static_cast<void>(board_.serial_waiting(serial->uart));
   } else if (const auto* const plug = std::get_if<Plug>(&action);
              plug != nullptr && plug->cable == Cable::terminal && !terminal_) {
     throw std::invalid_argument(name() + ": its serial port is no terminal; see --serial-pty");
@@ -313,7 +312,7 @@ void Panel::do_action(const SetAnalog& set) {
 void Panel::do_action(const Serial& serial) {
   const std::string line = serial.text + '\n';
   const std::vector<std::uint8_t> bytes(line.begin(), line.end());
-  board_.serial_write(serial.uart.value_or(first_uart_), bytes);
+  board_.serial_write(serial.uart, bytes);
 }
 
 void Panel::do_action(const Reset& /*reset*/) {

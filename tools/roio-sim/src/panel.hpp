@@ -86,7 +86,6 @@ class Panel {
   std::uint32_t bitrate_bps_;
   Report& report_;
   sim::Board board_;
-  int first_uart_;
   std::map<int, Pin> pins_;
   std::map<int, Line> lines_;
   CanState state_;        // as it is

@@ -36,9 +36,9 @@ class TextReport final : public Report {
   void pin(sim::SimTime /*time*/, const std::string& board, int pin, bool high) override {
     line("{}: output: pin {} {}\n", board, pin, high ? "high" : "low");
   }
-  void serial(sim::SimTime /*time*/, const std::string& board, int uart, bool is_first,
+  void serial(sim::SimTime /*time*/, const std::string& board, int uart,
               std::string_view text) override {
-    if (is_first) {
+    if (uart == 0) {
       line("{}: serial: {}\n", board, printable(text));
     } else {
       line("{}: serial{}: {}\n", board, uart, printable(text));
@@ -84,7 +84,7 @@ class JsonReport final : public Report {
   void pin(sim::SimTime time, const std::string& board, int pin, bool high) override {
     line({{"type", "output"}, {"board", board}, {"pin", pin}, {"high", high}}, time);
   }
-  void serial(sim::SimTime time, const std::string& board, int uart, bool /*is_first*/,
+  void serial(sim::SimTime time, const std::string& board, int uart,
               std::string_view text) override {
     line({{"type", "serial"}, {"board", board}, {"uart", uart}, {"text", text}}, time);
   }

@@ -36,8 +36,9 @@ class Report {
 
   virtual void servo(sim::SimTime time, const std::string& board, int pin, int degrees) = 0;
   virtual void pin(sim::SimTime time, const std::string& board, int pin, bool high) = 0;
-  /// @param text a line without its end, any bytes. @param is_first of the board's UARTs.
-  virtual void serial(sim::SimTime time, const std::string& board, int uart, bool is_first,
+  /// @param uart as Arduino counts them: 0 is Serial. @param text a line without its end, any
+  /// bytes.
+  virtual void serial(sim::SimTime time, const std::string& board, int uart,
                       std::string_view text) = 0;
   /// @param state a mode of the chip, error-passive or bus-off.
   virtual void can(sim::SimTime time, const std::string& board, const std::string& state,

@@ -129,21 +129,24 @@ class Board {
   /// The same as Arduino's Servo means it: 544 us is 0 degrees, 2400 us is 180.
   [[nodiscard]] std::optional<double> servo_angle(int pin) const;
 
-  // --- UARTs: 0 is Serial of Uno and Mega, 1 is Serial1 of Leonardo and Mega. All throw
-  // std::invalid_argument for one that is not there
-  // ------------------------------------------------
+  // --- serial ports, as Arduino numbers them: 0 is Serial, 1 is Serial1. All are UARTs, but for
+  // the Leonardo's 0, which is USB with a PC at its other end: that sets it up some 10 ms after the
+  // board starts. All throw std::invalid_argument for one that is not there ---------------------
 
-  /// Called with each byte that the board sent, at the end of its last bit.
-  void on_serial(int uart, std::function<void(std::uint8_t)> listener);
+  /// Called with each byte that the board sent, at the end of its last bit, or of its USB packet.
+  void on_serial(int port, std::function<void(std::uint8_t)> listener);
   /// Sends to the board, one byte after the other, at the rate that its program has set.
-  void serial_write(int uart, std::span<const std::uint8_t> bytes);
+  void serial_write(int port, std::span<const std::uint8_t> bytes);
   /// Bytes of serial_write() that have not begun yet.
-  [[nodiscard]] std::size_t serial_waiting(int uart) const;
-  [[nodiscard]] const SerialCounters& serial_counters(int uart) const;
-  /// As programmed: 16 MHz / (16 or 8) / (UBRR + 1).
-  [[nodiscard]] double serial_bitrate_bps(int uart) const;
-  /// Of the byte that on_serial() told last: the program may have set another since. 0: of none.
-  [[nodiscard]] double serial_sent_bitrate_bps(int uart) const;
+  [[nodiscard]] std::size_t serial_waiting(int port) const;
+  /// The PC takes nothing of what the board sends, or does again.
+  /// @throws std::invalid_argument: a UART, which has no flow control.
+  void serial_hold(int port, bool holds);
+  [[nodiscard]] const SerialCounters& serial_counters(int port) const;
+  /// As programmed: 16 MHz / (16 or 8) / (UBRR + 1). None: USB, which has no such rate.
+  [[nodiscard]] std::optional<double> serial_bitrate_bps(int port) const;
+  /// Of the byte that on_serial() told last: the program may have set another since. None: of none.
+  [[nodiscard]] std::optional<double> serial_sent_bitrate_bps(int port) const;
 
  private:
   class Machine;
