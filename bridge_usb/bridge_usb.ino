@@ -51,22 +51,33 @@ static bool takeFromBus() {
   return true;
 }
 
-static void takeFromPc(bool mayWait) {
+// Takes in what has come, up to the end of a record.
+// @return whether there may be more.
+static bool takeBytes() {
   constexpr uint8_t most = 24;
   const uint8_t* bytes = nullptr;
   uint8_t count = line.peek(bytes);
+  if (count == 0 || session.has_record()) {
+    return false;
+  }
   if (count > most) {
     count = most;
   }
-  if (count != 0 && !session.has_record()) {
-    const bool isText = !session.is_open();
-    session.take(bytes, count);
-    if (isText) {
-      for (uint8_t i = 0; i < count; ++i) {
-        slcan.take(bytes[i]);
-      }
+  const bool isText = !session.is_open();
+  session.take(bytes, count);
+  if (isText) {
+    for (uint8_t i = 0; i < count; ++i) {
+      slcan.take(bytes[i]);
     }
-    line.consume(count);
+  }
+  line.consume(count);
+  return true;
+}
+
+static void takeFromPc(bool mayWait) {
+  // More come meanwhile: a record is served as soon as its last byte is there.
+  constexpr uint8_t mostTries = 8;
+  for (uint8_t tries = mostTries; tries != 0 && takeBytes() && can.is_quiet(); --tries) {
   }
   if (session.has_record() && !(mayWait && can.has_received())) {
     session.serve();

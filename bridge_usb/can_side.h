@@ -117,6 +117,7 @@ class CanSide {
   struct Traits : Mcp2515Traits {
     using Count = uint32_t;
     static constexpr bool all_kinds = true;
+    static constexpr bool back_to_back = true;
     static constexpr bool reports_outcomes = true;
     void on_outcome(uint8_t token, TxOutcome outcome) {
       slots.end(token, outcome == TxOutcome::sent      ? serial::Outcome::sent
@@ -189,6 +190,8 @@ class CanSide {
   bool has_received() {
     return driver_.port().is_wired() && driver_.port().interrupt_line_is_low();
   }
+  /// Whether the INT line says that none does.
+  bool is_quiet() { return driver_.port().is_wired() && !driver_.port().interrupt_line_is_low(); }
   /// @param token comes back to slots() with the frame's outcome.
   Status send(const Frame& frame, uint8_t token) { return driver_.send(frame, token); }
   Status send(const Mcp2515Frame& frame, uint8_t token) { return driver_.send(frame, token); }

@@ -24,10 +24,10 @@ class UsbLine {
   /// @return how many bytes; 0: none.
   uint8_t peek(const uint8_t*& bytes) {
     if (in_at_ == in_end_) {
-      in_at_ = in_end_ = 0;
-      while (in_end_ < sizeof in_bytes_ && Serial.available() > 0) {
-        in_bytes_[in_end_++] = static_cast<uint8_t>(Serial.read());
-      }
+      // All at once: Serial.read() takes 100 cycles for each byte.
+      const int count = USB_Recv(CDC_RX, in_bytes_, sizeof in_bytes_);
+      in_at_ = 0;
+      in_end_ = count > 0 ? static_cast<uint8_t>(count) : uint8_t{0};
     }
     bytes = in_bytes_ + in_at_;
     return static_cast<uint8_t>(in_end_ - in_at_);
@@ -49,30 +49,37 @@ class UsbLine {
   bool is_drained() const { return out_.size() == 0; }
   static uint32_t overruns() { return 0; }
 
-  /// Gives USB what it has room for; never more, for that would wait for the PC.
+  /// Gives USB what it has room for, and sends it: the host comes for it many times a millisecond.
+  ///
+  /// One byte of a packet stays free: behind a full one, Arduino would send an empty one, and wait
+  /// up to 250 ms for the PC to take it.
   void pump() {
     if (held_ || out_.size() == 0) {
       return;
     }
-    const int room = Serial.availableForWrite();
+    const int room = Serial.availableForWrite() - 1;
+    if (room <= 0) {
+      return;
+    }
     uint8_t count = out_.size();
     const uint16_t to_the_end = static_cast<uint16_t>(sizeof out_bytes_ - out_.tail);
     if (count > to_the_end) {
       count = static_cast<uint8_t>(to_the_end);
     }
-    if (room <= 0) {
-      return;
-    }
     if (count > room) {
       count = static_cast<uint8_t>(room);
     }
     out_.tail = static_cast<uint8_t>(out_.tail + Serial.write(out_bytes_ + out_.tail, count));
+    const uint8_t before = SREG;
+    cli();  // its interrupts select endpoints, too
+    Serial.flush();
+    SREG = before;
   }
 
  private:
   uint8_t in_at_;
   uint8_t in_end_;
-  uint8_t in_bytes_[64];  // as much as USB brings at once
+  uint8_t in_bytes_[24];  // some 20 us
   RingEnds out_;
   uint8_t out_bytes_[ring_size];
   bool held_;

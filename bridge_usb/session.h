@@ -104,6 +104,10 @@ class Session {
   void end();
   void serve(const uint8_t* body, uint8_t length);
   void take_frame(const uint8_t* body, uint8_t length);
+  void set_session(uint32_t session) {
+    session_ = session;
+    reader_.expect(session);
+  }
   static bool read_body(const uint8_t* body, uint8_t length, Mcp2515Frame& frame);
   void notice_sequence(uint8_t sequence);
   void control(serial::Down operation, const uint8_t* payload, uint8_t length);
@@ -113,19 +117,20 @@ class Session {
   Status set_speed(const uint8_t* payload);
   void echo(const uint8_t* payload, uint8_t length);
   bool passes(const uint8_t* tag_bytes) const;
-  uint8_t put_body(const Mcp2515Frame& frame, uint16_t ticks, uint8_t* body) const;
+  void put_head(const Mcp2515Frame& frame, uint16_t ticks, uint8_t* head) const;
   void change_speed();
   void send_answers();
   void send_welcome();
   void send_status();
   void send_counters();
   void send_results();
-  void write(uint32_t session, const uint8_t* body, uint8_t length);
+  void write(uint32_t session, const uint8_t* body, uint8_t length, const uint8_t* more,
+             uint8_t more_length);
   void begin(serial::Body& body, serial::Up operation) const {
     body.put(static_cast<uint8_t>(operation));
     body.put(static_cast<uint8_t>(due_));
   }
-  void write(const serial::Body& body) { write(session_, body.bytes(), body.length()); }
+  void write(const serial::Body& body) { write(session_, body.bytes(), body.length(), nullptr, 0); }
   bool has_room(uint8_t body_length) const {
     return line_.room() >= static_cast<uint8_t>(body_length + record_overhead);
   }
@@ -177,7 +182,7 @@ inline void Session::hello(const uint8_t* body, uint8_t length) {
     wanted_ = 0;
     can_.slots().begin_session();
   }
-  session_ = speaks_this ? session : serial::no_session;
+  set_session(speaks_this ? session : serial::no_session);
   wanted_ |= welcome;
   heard();
 }
@@ -192,7 +197,7 @@ inline void Session::heard() {
 }
 
 inline void Session::end() {
-  session_ = serial::no_session;
+  set_session(serial::no_session);
   wanted_ = 0;
   change_ = Change::none;
   line_.set_rate(serial::base_rate_bps);
@@ -401,8 +406,10 @@ inline void Session::echo(const uint8_t* payload, uint8_t length) {
 /// There is room.
 ROIO_BRIDGE_FAST __attribute__((noinline)) inline void Session::write(uint32_t session,
                                                                       const uint8_t* body,
-                                                                      uint8_t length) {
-  line_.commit(serial::write_record(line_.sink(), session, body, length));
+                                                                      uint8_t length,
+                                                                      const uint8_t* more,
+                                                                      uint8_t more_length) {
+  line_.commit(serial::write_record(line_.sink(), session, body, length, more, more_length));
 }
 
 inline bool Session::passes(const uint8_t* tag_bytes) const {
@@ -415,55 +422,49 @@ inline bool Session::passes(const uint8_t* tag_bytes) const {
   return false;
 }
 
-/// The body of a frame's record, from the chip's bytes: no word is ever put together, which an AVR
-/// would do byte by byte and bit by bit.
-/// @return its length.
-inline uint8_t Session::put_body(const Mcp2515Frame& frame, uint16_t ticks, uint8_t* body) const {
+/// What is in front of the data in a frame's record, from the chip's bytes: no word is ever put
+/// together, which an AVR would do byte by byte and bit by bit.
+inline void Session::put_head(const Mcp2515Frame& frame, uint16_t ticks, uint8_t* head) const {
   const uint8_t* chip = frame.bytes;
   const bool remote = frame.is_remote();
   if (frame.is_extended()) {
-    body[0] = static_cast<uint8_t>((remote ? 0xC0 : 0x80) | (chip[0] >> 3));
-    body[1] = static_cast<uint8_t>((chip[0] << 5) | ((chip[1] >> 3) & 0x1C) | (chip[1] & 0x03));
-    body[2] = chip[2];
-    body[3] = chip[3];
+    head[0] = static_cast<uint8_t>((remote ? 0xC0 : 0x80) | (chip[0] >> 3));
+    head[1] = static_cast<uint8_t>((chip[0] << 5) | ((chip[1] >> 3) & 0x1C) | (chip[1] & 0x03));
+    head[2] = chip[2];
+    head[3] = chip[3];
   } else {
-    body[0] = remote ? 0x40 : 0x00;
-    body[1] = 0;
-    body[2] = static_cast<uint8_t>(chip[0] >> 5);
-    body[3] = static_cast<uint8_t>((chip[0] << 3) | (chip[1] >> 5));
+    head[0] = remote ? 0x40 : 0x00;
+    head[1] = 0;
+    head[2] = static_cast<uint8_t>(chip[0] >> 5);
+    head[3] = static_cast<uint8_t>((chip[0] << 3) | (chip[1] >> 5));
   }
-  body[serial::sequence_at] = static_cast<uint8_t>(due_);
-  body[serial::time_at] = static_cast<uint8_t>(ticks >> 8);
-  body[serial::time_at + 1] = static_cast<uint8_t>(ticks);
-  const uint8_t length = frame.length();
-  uint8_t* payload = body + serial::frame_head_up;
-  if (remote) {
-    *payload = length;
-    return serial::frame_head_up + 1;
-  }
-  for (uint8_t i = 0; i < length; ++i) {
-    payload[i] = frame.data()[i];
-  }
-  return static_cast<uint8_t>(serial::frame_head_up + length);
+  head[serial::sequence_at] = static_cast<uint8_t>(due_);
+  head[serial::time_at] = static_cast<uint8_t>(ticks >> 8);
+  head[serial::time_at + 1] = static_cast<uint8_t>(ticks);
 }
 
 ROIO_BRIDGE_FAST inline void Session::forward(const Mcp2515Frame& frame, uint16_t ticks) {
-  uint8_t body[serial::frame_head_up + max_data_length];
-  const uint8_t length = put_body(frame, ticks, body);
-  if (!everything_passes_ && !passes(body)) {
+  uint8_t head[serial::frame_head_up];
+  put_head(frame, ticks, head);
+  if (!everything_passes_ && !passes(head)) {
     return;
   }
   ++due_;
   if (!is_open()) {
     return;
   }
+  // A remote frame has its length there in place of data.
+  const uint8_t frame_length = frame.length();
+  const bool remote = frame.is_remote();
+  const uint8_t* const payload = remote ? &frame_length : frame.data();
+  const uint8_t payload_length = remote ? uint8_t{1} : frame_length;
   // A line that is to change its rate has to run empty, and WELCOME needs more room than a frame.
   if (change_ == Change::draining || (wanted_ & welcome) != 0 ||
-      !has_room(static_cast<uint8_t>(length + reserve))) {
+      !has_room(static_cast<uint8_t>(serial::frame_head_up + payload_length + reserve))) {
     ++tally_.dropped;
     return;
   }
-  write(session_, body, length);
+  write(session_, head, serial::frame_head_up, payload, payload_length);
 }
 
 ROIO_BRIDGE_FAST inline void Session::answer() {
@@ -549,7 +550,7 @@ inline void Session::send_welcome() {
   body.put(node_.address().subnet);
   body.put(node_.address().node);
   body.put((1U << serial::rate_count) - 1U);
-  write(serial::no_session, body.bytes(), body.length());
+  write(serial::no_session, body.bytes(), body.length(), nullptr, 0);
 }
 
 inline void Session::send_status() {

@@ -29,8 +29,10 @@ constexpr std::uint32_t bitrate_bps = 500'000;
 constexpr std::uint32_t session_number = 0x52AB0149;
 
 inline std::filesystem::path bridge_image(sim::BoardKind kind) {
-  return std::filesystem::path(ROIO_IMAGES_DIR) / (kind == sim::BoardKind::mega ? "mega" : "uno") /
-         "bridge_usb.elf";
+  const char* const folder = kind == sim::BoardKind::uno        ? "uno"
+                             : kind == sim::BoardKind::leonardo ? "leonardo"
+                                                                : "mega";
+  return std::filesystem::path(ROIO_IMAGES_DIR) / folder / "bridge_usb.elf";
 }
 
 /// Written from docs/serial-protocol.md: the body of a control record.
@@ -72,7 +74,8 @@ struct BridgeRig {
       : node(bus, bitrate_bps), board(bus, kind, bridge_image(kind), options) {
     node.on_receive([this](const Frame& frame) { on_bus.push_back(frame); });
     board.on_serial(0, [this](std::uint8_t byte) { take(byte); });
-    bus.run_for(20ms);  // the crystal is measured, the controller started
+    // The crystal is measured, the controller started, and USB set up.
+    bus.run_for(kind == sim::BoardKind::leonardo ? 100ms : 20ms);
   }
   ~BridgeRig() {
     EXPECT_TRUE(board.violations().empty()) << board.violations().front().what;

@@ -13,16 +13,19 @@ namespace {
 
 class EachBridge : public testing::TestWithParam<sim::BoardKind> {};
 INSTANTIATE_TEST_SUITE_P(Board, EachBridge,
-                         testing::Values(sim::BoardKind::uno, sim::BoardKind::mega),
+                         testing::Values(sim::BoardKind::uno, sim::BoardKind::leonardo,
+                                         sim::BoardKind::mega),
                          [](const auto& kind) { return std::string(sim::to_string(kind.param)); });
 
 TEST_P(EachBridge, WelcomeSaysWhatItIs) {
   BridgeRig rig(GetParam());
   const Bytes welcome = rig.hello();
-  const std::uint8_t board = GetParam() == sim::BoardKind::uno ? 1 : 3;
+  const auto board = static_cast<std::uint8_t>(static_cast<int>(GetParam()) + 1);
+  // The line has a rate unless it is USB; the interrupt pin is wired.
+  const std::uint8_t flags = GetParam() == sim::BoardKind::leonardo ? 2 : 3;
   EXPECT_EQ(welcome, (Bytes{0xF1, 0, 1} + bytes_of(session_number) + bytes_of(0) + bytes_of(0) +
-                      Bytes{ROIO_VERSION_MAJOR, ROIO_VERSION_MINOR, ROIO_VERSION_PATCH, board, 3,
-                            16, 0x3E, 0x80} +
+                      Bytes{ROIO_VERSION_MAJOR, ROIO_VERSION_MINOR, ROIO_VERSION_PATCH, board,
+                            flags, 16, 0x3E, 0x80} +
                       bytes_of(500'000) + Bytes{0, 0, 254, 0x1F}));
 }
 

@@ -79,11 +79,13 @@ struct Load {
   bool up;
   bool down;
   int length;
+  sim::BoardKind kind = sim::BoardKind::uno;
 };
 
 std::string name_of(const testing::TestParamInfo<Load>& load) {
   return std::string(load.param.up ? "Up" : "") + (load.param.down ? "Down" : "") +
-         std::to_string(load.param.length);
+         std::to_string(load.param.length) +
+         (load.param.kind == sim::BoardKind::leonardo ? "OverUsb" : "");
 }
 
 class BridgeLoad : public testing::TestWithParam<Load> {
@@ -130,7 +132,7 @@ class BridgeLoad : public testing::TestWithParam<Load> {
     }
   }
 
-  BridgeRig rig;
+  BridgeRig rig{GetParam().kind};
   Sender sender{rig, GetParam().length};
   std::uint32_t given = 0;
   std::uint32_t received = 0;
@@ -167,7 +169,12 @@ INSTANTIATE_TEST_SUITE_P(Bridge, BridgeLoad,
                                          Load{true, false, 4}, Load{true, false, 8},
                                          Load{false, true, 0}, Load{false, true, 4},
                                          Load{false, true, 8}, Load{true, true, 2},
-                                         Load{true, true, 4}, Load{true, true, 8}),
+                                         Load{true, true, 4}, Load{true, true, 8},
+                                         Load{true, false, 0, sim::BoardKind::leonardo},
+                                         Load{true, false, 8, sim::BoardKind::leonardo},
+                                         Load{false, true, 0, sim::BoardKind::leonardo},
+                                         Load{false, true, 8, sim::BoardKind::leonardo},
+                                         Load{true, true, 8, sim::BoardKind::leonardo}),
                          name_of);
 
 }  // namespace

@@ -16,7 +16,7 @@ from driver import CLI, GUARD, main
 sys.path.append(os.path.join(os.path.dirname(__file__), "..", "roio_sim"))
 from sim_driver import Lines, Sim, SimTest  # noqa: E402
 
-BRIDGE = os.path.join(os.environ["ROIO_SIM_IMAGES"], "uno", "bridge_usb.elf")
+IMAGES = os.environ["ROIO_SIM_IMAGES"]
 IN_USE = "another program has the port open; `fuser -v` with the port's name tells which"
 
 SHOWN = """\
@@ -95,10 +95,11 @@ class Attach:
         self.process.stderr.close()
 
 
-def start_bridge(test, bus="local:robot"):
+def start_bridge(test, bus="local:robot", board="uno"):
     """A board that is there, and the path of its terminal."""
     port = test.path("ttyACM0")
-    board = Sim("--bus", bus, "--serial-pty", "usb:" + port, "usb:uno=" + BRIDGE)
+    image = os.path.join(IMAGES, board, "bridge_usb.elf")
+    board = Sim("--bus", bus, "--serial-pty", "usb:" + port, f"usb:{board}={image}")
     test.addCleanup(board.end)
     board.wait_for("usb: can: normal, 500000 bit/s")
     return board, port
@@ -119,6 +120,23 @@ class BridgeTest(SimTest):
         status, out, err = self.run_cli("bridge", "show", "--json", self.port)
         self.assertEqual((status, err), (0, ""))
         return json.loads(out)
+
+
+class LeonardoTest(SimTest):
+    """Over the USB of its processor."""
+
+    def test_frames_go_both_ways_and_there_is_no_line_rate(self):
+        _, port = start_bridge(self, board="leonardo")
+        dump = self.dump("-n", "1", "local:robot")
+        self.send("serial:" + port, "0.2", "5A2D00")
+        self.assertEqual(dump.result()[0], 0)
+        dump = self.dump("-n", "1", "serial:" + port)
+        self.send("local:robot", "0.2", "5A2D01")
+        self.assertEqual(dump.result()[0], 0)
+        status, out, err = self.run_cli("bridge", "show", port)
+        self.assertEqual((status, err), (0, ""))
+        self.assertIn(f"{port}: leonardo, firmware", out)
+        self.assertIn("  serial line  USB\n", out)
 
 
 class ShowTest(BridgeTest):

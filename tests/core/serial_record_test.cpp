@@ -42,19 +42,23 @@ struct Decoded {
 Decoded decode(const Bytes& stream, std::uint32_t session) {
   Decoded decoded;
   RecordReader reader;
+  reader.expect(session);
+  RecordReader surprised;
+  surprised.expect(~session);
   for (const std::uint8_t byte : stream) {
-    switch (reader.take(byte)) {
-      case RecordReader::Event::none:
-        break;
-      case RecordReader::Event::record:
-        if (reader.is_intact(session)) {
-          decoded.bodies.emplace_back(reader.body(), reader.body() + reader.length());
-          break;
-        }
-        [[fallthrough]];
-      case RecordReader::Event::damaged:
-        ++decoded.damaged;
-        break;
+    const RecordReader::Event event = reader.take(byte);
+    EXPECT_EQ(surprised.take(byte), event);
+    if (event == RecordReader::Event::none) {
+      continue;
+    }
+    const bool is_intact = event == RecordReader::Event::record && reader.is_intact(session);
+    if (event == RecordReader::Event::record) {
+      EXPECT_EQ(surprised.is_intact(session), is_intact) << "whatever was expected";
+    }
+    if (is_intact) {
+      decoded.bodies.emplace_back(reader.body(), reader.body() + reader.length());
+    } else {
+      ++decoded.damaged;
     }
   }
   return decoded;

@@ -157,23 +157,27 @@ void check_stream(Bytes stream) {
           "in step again after a delimiter");
 }
 
-/// What has ended, and the bytes of it when it was a record.
+/// What has ended, the bytes of it when it was a record, and whether it is one of the open session.
 struct Ended {
   Event event;
   Bytes bytes;
+  bool is_intact;
   friend bool operator==(const Ended&, const Ended&) = default;
 };
 
 Ended ended(const RecordReader& reader, Event event) {
-  return {event, event == Event::record
-                     ? Bytes(reader.body(), reader.body() + reader.length() + serial::check_length)
-                     : Bytes()};
+  if (event != Event::record) {
+    return {event, {}, false};
+  }
+  return {event, Bytes(reader.body(), reader.body() + reader.length() + serial::check_length),
+          reader.is_intact(open_session)};
 }
 
 /// Bytes taken many at once are what they are one by one.
 void check_pieces(const Bytes& stream, std::uint8_t piece) {
   RecordReader one_by_one;
   RecordReader at_once;
+  at_once.expect(open_session);  // checks as they come
   std::vector<Ended> expected_ends;
   std::vector<Ended> ends;
   for (const std::uint8_t byte : stream) {

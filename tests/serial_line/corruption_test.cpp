@@ -45,6 +45,8 @@ class Checked {
  public:
   explicit Checked(std::uint32_t session) : session_(session) {}
 
+  void prepare(RecordReader& reader) const { reader.expect(session_); }
+
   void encode(const Body& body, Bytes& record) const {
     struct Sink {
       void put(std::uint8_t offset, std::uint8_t byte) { bytes[offset] = byte; }
@@ -73,6 +75,8 @@ class Checked {
 class CheckedBy16 {
  public:
   explicit CheckedBy16(std::uint32_t session) : start_(static_cast<std::uint16_t>(~session)) {}
+
+  static void prepare(RecordReader& /*reader*/) {}
 
   void encode(const Body& body, Bytes& record) const {
     const std::uint16_t check = check_of(body.bytes.data(), body.length);
@@ -166,7 +170,9 @@ class Proof {
       : random_(random),
         code_(static_cast<std::uint32_t>(random_())),
         line_(mix, random_),
-        sender_(random_) {}
+        sender_(random_) {
+    code_.prepare(reader_);
+  }
 
   void run(std::uint64_t records) {
     for (records_ = 0; records_ < records; ++records_) {

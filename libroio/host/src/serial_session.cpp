@@ -166,6 +166,7 @@ void SerialSession::call(Time now) {
       break;
     }
   }
+  reader_.expect(session_);
   say_hello(now);
 }
 

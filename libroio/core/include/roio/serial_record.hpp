@@ -44,43 +44,66 @@ class Body {
   uint8_t bytes_[max_body];
 };
 
-/// Writes a record into a Sink, best a small value, so that all that changes with each byte can
-/// stay in registers.
+/// Puts a record into a Sink, byte by byte. All of it is inlined, so that what changes with each
+/// byte can stay in registers; best with a Sink that is a small value.
 ///
 ///   struct Sink { void put(uint8_t offset, uint8_t byte); };  // in no order; offset < max_record
-///
-/// @param length min_body..max_body.
+template <typename Sink>
+class RecordEncoder {
+ public:
+  __attribute__((always_inline)) RecordEncoder(Sink sink, uint32_t session)
+      : sink_(sink), check_(session), zero_(0), at_(1) {}
+
+  __attribute__((always_inline)) void add(const uint8_t* bytes, uint8_t length) {
+    for (; length != 0; --length) {
+      const uint8_t byte = *bytes++;
+      check_.add(byte);
+      place(byte);
+    }
+  }
+  /// @return how many bytes the record has.
+  __attribute__((always_inline)) uint8_t finish() {
+    for (uint8_t i = 0; i < check_length; ++i) {
+      place(check_.take_byte());
+    }
+    end_block();
+    sink_.put(at_, delimiter);
+    return static_cast<uint8_t>(at_ + 1U);
+  }
+
+ private:
+  __attribute__((always_inline)) void place(uint8_t byte) {
+    if (byte != 0) {
+      sink_.put(at_, byte);
+    } else {
+      end_block();
+    }
+    ++at_;
+  }
+  /// A zero is known by its distance to the next one; the last is the delimiter.
+  __attribute__((always_inline)) void end_block() {
+    sink_.put(zero_, static_cast<uint8_t>(at_ - zero_));
+    zero_ = at_;
+  }
+
+  Sink sink_;
+  Crc32c check_;
+  uint8_t zero_;
+  uint8_t at_;
+};
+
+/// Writes the record of a body that lies in two pieces.
+/// @param length, more_length of the pieces: min_body..max_body together.
 /// @return how many bytes the record has.
 template <typename Sink>
 __attribute__((always_inline)) inline uint8_t write_record(Sink sink, uint32_t session,
-                                                           const uint8_t* body, uint8_t length) {
-  Crc32c check(session);
-  uint8_t zero = 0;
-  uint8_t at = 1;
-  uint8_t left = static_cast<uint8_t>(length + check_length);
-  for (;;) {
-    uint8_t byte = 0;
-    if (left > check_length) {
-      byte = *body++;
-      check.add(byte);
-    } else if (left != 0) {
-      byte = check.take_byte();
-    }
-    if (byte != 0) {
-      sink.put(at, byte);
-    } else {
-      // A zero is known by its distance to the next one; the last is the delimiter.
-      sink.put(zero, static_cast<uint8_t>(at - zero));
-      zero = at;
-      if (left == 0) {
-        break;
-      }
-    }
-    ++at;
-    --left;
-  }
-  sink.put(at, delimiter);
-  return static_cast<uint8_t>(at + 1U);
+                                                           const uint8_t* body, uint8_t length,
+                                                           const uint8_t* more = nullptr,
+                                                           uint8_t more_length = 0) {
+  RecordEncoder<Sink> encoder(sink, session);
+  encoder.add(body, length);
+  encoder.add(more, more_length);
+  return encoder.finish();
 }
 
 /// A body that becomes a record where it ends: for who has time.
@@ -101,8 +124,10 @@ class RecordWriter : public Body {
   uint32_t session_;
 };
 
-/// Finds records in a stream of bytes.
+/// Finds records in a stream of bytes. Checks them as their bytes come, so that little is left to
+/// do at the end: for those of one session, which is told beforehand.
 ///
+///   reader.expect(session);
 ///   if (reader.take(byte) == RecordReader::Event::record && reader.is_intact(session))
 ///     use(reader.body(), reader.length());
 class RecordReader {
@@ -113,7 +138,17 @@ class RecordReader {
     damaged,  ///< What has ended breaks COBS, or is too short or too long.
   };
 
-  RecordReader() : length_(0), block_(0), state_(State::empty), buffer_() {}
+  RecordReader()
+      : length_(0),
+        block_(0),
+        state_(State::empty),
+        expected_(0),
+        checked_(0),
+        check_(0),
+        buffer_() {}
+
+  /// From the next record on, most are of this session.
+  void expect(uint32_t session) { expected_ = session; }
 
   Event take(uint8_t byte) {
     uint8_t count = 1;
@@ -126,6 +161,7 @@ class RecordReader {
     // What changes with each byte is kept out of memory: at 1 Mbit/s one comes every 160 cycles.
     uint8_t length = length_;
     uint8_t block = block_;
+    uint8_t before = length;
     uint8_t left = count;
     Event event = Event::none;
     if (left != 0 && state_ == State::ended) {
@@ -151,6 +187,9 @@ class RecordReader {
         byte = 0;
         if (state_ == State::empty) {
           state_ = State::inside;
+          checked_ = expected_;
+          check_ = Crc32c(expected_);
+          before = 0;
           continue;
         }
       }
@@ -160,6 +199,7 @@ class RecordReader {
       }
       buffer_[length++] = byte;
     }
+    add_to_check(before, length);
     count = static_cast<uint8_t>(count - left);
     length_ = length;
     block_ = block;
@@ -168,9 +208,12 @@ class RecordReader {
 
   /// Of the record that take() has just told of; until the next byte.
   bool is_intact(uint32_t session) const {
-    Crc32c check(session);
-    for (uint8_t i = 0; i < length(); ++i) {
-      check.add(buffer_[i]);
+    Crc32c check = check_;
+    if (session != checked_) {
+      check = Crc32c(session);
+      for (uint8_t i = 0; i < length(); ++i) {
+        check.add(buffer_[i]);
+      }
     }
     const uint8_t* const tail = buffer_ + length();
     const uint32_t value = check.value();
@@ -190,6 +233,21 @@ class RecordReader {
     ended,   // the buffer is the reader's user's
   };
 
+  /// The buffer has grown. The last bytes that it has may be the check itself.
+  void add_to_check(uint8_t before, uint8_t now) {
+    if (now <= check_length) {
+      return;
+    }
+    uint8_t from = before > check_length ? static_cast<uint8_t>(before - check_length) : uint8_t{0};
+    const uint8_t to = static_cast<uint8_t>(now - check_length);
+    Crc32c check = check_;
+    const uint8_t* next = buffer_ + from;
+    for (; from < to; ++from) {
+      check.add(*next++);
+    }
+    check_ = check;
+  }
+
   /// Something ends, here.
   Event end(uint8_t length, uint8_t block) {
     const bool is_record =
@@ -201,6 +259,9 @@ class RecordReader {
   uint8_t length_;
   uint8_t block_;  // bytes to come before the next code
   State state_;
+  uint32_t expected_;
+  uint32_t checked_;  // the session that check_ is for
+  Crc32c check_;      // of all that is in the buffer but for the last check_length bytes
   uint8_t buffer_[max_body + check_length];
 };
 
