@@ -99,9 +99,12 @@ void loop() {
     return;
   }
   const bool mayWait = inARow != mostInARow;
-  inARow = 0;
   const bool ticks = clock.update();  // about every millisecond
   takeFromPc(mayWait);
+  if (mayWait && can.has_received()) {
+    return;
+  }
+  inARow = 0;
   session.answer();
   line.pump();
   if (ticks) {

@@ -41,7 +41,8 @@ class Session {
         heard_at_(0),
         everything_passes_(true),
         rule_count_(0),
-        rules_() {}
+        rules_(),
+        head_() {}
 
   bool is_open() const { return session_ != serial::no_session; }
 
@@ -117,7 +118,7 @@ class Session {
   Status set_speed(const uint8_t* payload);
   void echo(const uint8_t* payload, uint8_t length);
   bool passes(const uint8_t* tag_bytes) const;
-  void put_head(const Mcp2515Frame& frame, uint16_t ticks, uint8_t* head) const;
+  uint8_t put_head(const Mcp2515Frame& frame, bool remote, uint16_t ticks);
   void change_speed();
   void send_answers();
   void send_welcome();
@@ -160,6 +161,7 @@ class Session {
   bool everything_passes_;
   uint8_t rule_count_;
   Rule rules_[serial::max_rules];
+  uint8_t head_[serial::frame_head_up + 1];  // not on the stack, which an AVR is slow at
 };
 
 // --- sessions ------------------------------------------------------------------------------------
@@ -422,49 +424,53 @@ inline bool Session::passes(const uint8_t* tag_bytes) const {
   return false;
 }
 
-/// What is in front of the data in a frame's record, from the chip's bytes: no word is ever put
+/// Into head_: a frame's record but for its data, from the chip's bytes: no word is ever put
 /// together, which an AVR would do byte by byte and bit by bit.
-inline void Session::put_head(const Mcp2515Frame& frame, uint16_t ticks, uint8_t* head) const {
-  const uint8_t* chip = frame.bytes;
-  const bool remote = frame.is_remote();
+/// @return its length.
+inline uint8_t Session::put_head(const Mcp2515Frame& frame, bool remote, uint16_t ticks) {
+  const uint8_t first = frame.bytes[0];
+  const uint8_t second = frame.bytes[1];
+  uint8_t kind = remote ? 0x40 : 0x00;
   if (frame.is_extended()) {
-    head[0] = static_cast<uint8_t>((remote ? 0xC0 : 0x80) | (chip[0] >> 3));
-    head[1] = static_cast<uint8_t>((chip[0] << 5) | ((chip[1] >> 3) & 0x1C) | (chip[1] & 0x03));
-    head[2] = chip[2];
-    head[3] = chip[3];
+    const uint8_t high = first >> 3;
+    const uint8_t middle = static_cast<uint8_t>(first << 5);
+    const uint8_t low = second >> 3;
+    kind |= 0x80;
+    head_[0] = kind | high;
+    head_[1] = static_cast<uint8_t>(middle | (low & 0x1C) | (second & 0x03));
+    head_[2] = frame.bytes[2];
+    head_[3] = frame.bytes[3];
   } else {
-    head[0] = remote ? 0x40 : 0x00;
-    head[1] = 0;
-    head[2] = static_cast<uint8_t>(chip[0] >> 5);
-    head[3] = static_cast<uint8_t>((chip[0] << 3) | (chip[1] >> 5));
+    head_[0] = kind;
+    head_[1] = 0;
+    head_[2] = static_cast<uint8_t>(first >> 5);
+    head_[3] = static_cast<uint8_t>((first << 3) | (second >> 5));
   }
-  head[serial::sequence_at] = static_cast<uint8_t>(due_);
-  head[serial::time_at] = static_cast<uint8_t>(ticks >> 8);
-  head[serial::time_at + 1] = static_cast<uint8_t>(ticks);
+  head_[serial::sequence_at] = static_cast<uint8_t>(due_);
+  head_[serial::time_at] = static_cast<uint8_t>(ticks >> 8);
+  head_[serial::time_at + 1] = static_cast<uint8_t>(ticks);
+  head_[serial::frame_head_up] = frame.length();  // in place of data
+  return remote ? serial::frame_head_up + 1 : serial::frame_head_up;
 }
 
 ROIO_BRIDGE_FAST inline void Session::forward(const Mcp2515Frame& frame, uint16_t ticks) {
-  uint8_t head[serial::frame_head_up];
-  put_head(frame, ticks, head);
-  if (!everything_passes_ && !passes(head)) {
+  const bool remote = frame.is_remote();
+  const uint8_t head_length = put_head(frame, remote, ticks);
+  const uint8_t data_length = remote ? uint8_t{0} : frame.length();
+  if (!everything_passes_ && !passes(head_)) {
     return;
   }
   ++due_;
   if (!is_open()) {
     return;
   }
-  // A remote frame has its length there in place of data.
-  const uint8_t frame_length = frame.length();
-  const bool remote = frame.is_remote();
-  const uint8_t* const payload = remote ? &frame_length : frame.data();
-  const uint8_t payload_length = remote ? uint8_t{1} : frame_length;
   // A line that is to change its rate has to run empty, and WELCOME needs more room than a frame.
   if (change_ == Change::draining || (wanted_ & welcome) != 0 ||
-      !has_room(static_cast<uint8_t>(serial::frame_head_up + payload_length + reserve))) {
+      !has_room(static_cast<uint8_t>(head_length + data_length + reserve))) {
     ++tally_.dropped;
     return;
   }
-  write(session_, head, serial::frame_head_up, payload, payload_length);
+  write(session_, head_, head_length, frame.data(), data_length);
 }
 
 ROIO_BRIDGE_FAST inline void Session::answer() {

@@ -34,8 +34,8 @@ struct Mcp2515Frame {
 
   uint8_t* data() { return bytes + head_length; }
   const uint8_t* data() const { return bytes + head_length; }
-  bool is_extended() const { return (bytes[1] & extended_bit) != 0; }
-  bool is_remote() const {
+  __attribute__((always_inline)) bool is_extended() const { return (bytes[1] & extended_bit) != 0; }
+  __attribute__((always_inline)) bool is_remote() const {
     return is_extended() ? (bytes[4] & remote_bit) != 0 : (bytes[1] & standard_remote_bit) != 0;
   }
   /// 0..8 in a frame that the driver handed out.
