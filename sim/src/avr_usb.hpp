@@ -39,9 +39,9 @@ class AvrUsb {
   void start_of_frame(std::uint16_t number);
   /// To endpoint 0, which takes it in any case.
   Answer setup(std::span<const std::uint8_t> bytes);
-  Answer out(unsigned endpoint, std::span<const std::uint8_t> bytes);
-  /// @param bytes what the endpoint had to send, on ack.
-  Answer in(unsigned endpoint, std::vector<std::uint8_t>& bytes);
+  Answer out(unsigned number, std::span<const std::uint8_t> bytes);
+  /// @param number of the endpoint. @param bytes what it had to send, on ack.
+  Answer in(unsigned number, std::vector<std::uint8_t>& bytes);
 
  private:
   static constexpr std::size_t endpoint_count = 7;

@@ -12,7 +12,7 @@ constexpr Cycle frame_cycles = AvrCore::clock_hz / 1000;
 constexpr std::size_t overhead_bytes = 13;
 constexpr Cycle cycles_of_three_bytes = 32;
 // After two transactions that moved nothing: a host goes on at once, which would show nothing new.
-constexpr Cycle idle_cycles = 20 * (AvrCore::clock_hz / 1'000'000);
+constexpr Cycle idle_cycles = Cycle{20} * (AvrCore::clock_hz / 1'000'000);
 // A PC waits for 100 ms, then resets for 10.
 constexpr std::uint16_t reset_frame = 3;
 constexpr std::uint16_t first_request_frame = 6;
