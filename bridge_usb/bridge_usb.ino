@@ -48,6 +48,9 @@ static bool takeFromBus() {
   } else {
     session.forward(frame, ticks);
   }
+  if (line.room() < Line::pump_below) {
+    line.pump();
+  }
   return true;
 }
 
@@ -92,14 +95,18 @@ void setup() {
 }
 
 void loop() {
-  // What the PC sends can wait, it never sends more than there is room for; but not for ever.
+  // The bus comes first, and the rest in turn; but it does not wait for ever, also when the line of
+  // a controller that is lost says that there is always one more frame.
   constexpr uint8_t mostInARow = 250;
+  constexpr uint8_t mostOnAFastBus = 24;
   static uint8_t inARow = 0;
-  if (takeFromBus() && ++inARow != mostInARow) {
+  static bool isTime = false;
+  ++inARow;
+  const bool mayWait = inARow < (can.is_fast() ? mostOnAFastBus : mostInARow);
+  if (takeFromBus() && mayWait) {
     return;
   }
-  const bool mayWait = inARow != mostInARow;
-  const bool ticks = clock.update();  // about every millisecond
+  isTime = clock.update() || isTime;  // about every millisecond
   takeFromPc(mayWait);
   if (mayWait && can.has_received()) {
     return;
@@ -107,7 +114,8 @@ void loop() {
   inARow = 0;
   session.answer();
   line.pump();
-  if (ticks) {
+  if (isTime) {
+    isTime = false;
     if (session.is_open()) {
       slcan.leave();
     }

@@ -139,7 +139,8 @@ class CanSide {
         start_status_(Status::no_chip),
         tried_at_(0),
         looked_at_(0),
-        is_stopped_(false) {}
+        is_stopped_(false),
+        is_fast_(false) {}
 
   void begin() {
     driver_.port().begin();
@@ -156,6 +157,7 @@ class CanSide {
       return Status::bad_timing;
     }
     bitrate_bps_ = bitrate_bps;
+    is_fast_ = bitrate_bps > 500000;
     mode_ = mode;
     return start();
   }
@@ -190,6 +192,8 @@ class CanSide {
   bool has_received() {
     return driver_.port().is_wired() && driver_.port().interrupt_line_is_low();
   }
+  /// Whether frames may always come faster than they are handed on.
+  bool is_fast() const { return is_fast_; }
   /// Whether the INT line says that none does.
   bool is_quiet() { return driver_.port().is_wired() && !driver_.port().interrupt_line_is_low(); }
   /// @param token comes back to slots() with the frame's outcome.
@@ -270,6 +274,7 @@ class CanSide {
   uint16_t tried_at_;
   uint8_t looked_at_;
   bool is_stopped_;
+  bool is_fast_;
 };
 
 }  // namespace bridge

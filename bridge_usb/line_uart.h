@@ -47,6 +47,7 @@ static volatile uint16_t uart_overruns;
 class UartLine {
  public:
   static constexpr bool rate_matters = true;
+  static constexpr uint8_t pump_below = 0;  ///< Interrupts do that.
 
   UartLine() : held_(false), idle_(true), overruns_(0) {}
 
@@ -68,10 +69,14 @@ class UartLine {
   uint8_t peek(const uint8_t*& bytes) const {
     const uint8_t tail = uart_in.tail;
     const uint8_t head = uart_in.head;
+    keep_order();
     bytes = uart_in_bytes + tail;
     return static_cast<uint8_t>(head >= tail ? head - tail : 0 - tail);
   }
-  void consume(uint8_t count) { uart_in.tail = static_cast<uint8_t>(uart_in.tail + count); }
+  void consume(uint8_t count) {
+    keep_order();
+    uart_in.tail = static_cast<uint8_t>(uart_in.tail + count);
+  }
 
   uint8_t room() const { return uart_out.room(); }
   /// Where records are written, from the first byte that is not committed yet.
@@ -83,6 +88,7 @@ class UartLine {
   };
   Sink sink() const { return Sink{uart_out.head}; }
   void commit(uint8_t count) {
+    keep_order();
     uart_out.head = static_cast<uint8_t>(uart_out.head + count);
     if (!held_) {
       send();
@@ -124,6 +130,10 @@ class UartLine {
   void pump() {}
 
  private:
+  /// Bytes are in memory before an index says so, and are read after: a compiler does not know that
+  /// an interrupt looks.
+  static void keep_order() { __asm__ volatile("" ::: "memory"); }
+
   static constexpr uint8_t bit_of(uint8_t bit) { return static_cast<uint8_t>(1U << bit); }
   static constexpr uint8_t double_speed = 1U << 1;       // U2X
   static constexpr uint8_t transmit_complete = 1U << 6;  // TXC
@@ -148,9 +158,8 @@ class UartLine {
 }  // namespace roio
 
 // In assembly, for each byte of the line takes one of these, and a compiler saves twice as many
-// registers. 44 and 48 cycles, from what was
-// going on to what goes on.
-// The ends are head, tail.
+// registers. With the way there and back, 49 cycles for a byte that comes, and 42 for one that goes
+// (46 for the last). The ends are head, tail.
 
 ISR(ROIO_RX_VECTOR, ISR_NAKED) {
   __asm__ volatile(

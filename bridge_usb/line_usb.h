@@ -14,6 +14,8 @@ namespace bridge {
 class UsbLine {
  public:
   static constexpr bool rate_matters = false;
+  /// While frames come one after the other.
+  static constexpr uint8_t pump_below = 128;
 
   UsbLine() : in_at_(0), in_end_(0), in_bytes_(), out_(), out_bytes_(), held_(false) {}
 

@@ -182,6 +182,9 @@ inline void Session::hello(const uint8_t* body, uint8_t length) {
     next_ = 0;
     gap_told_ = false;
     wanted_ = 0;
+    if (change_ == Change::draining) {
+      change_ = Change::none;  // what the session before has asked for
+    }
     can_.slots().begin_session();
   }
   set_session(speaks_this ? session : serial::no_session);
@@ -395,12 +398,9 @@ inline void Session::echo(const uint8_t* payload, uint8_t length) {
   if (!has_room(static_cast<uint8_t>(serial::control_head + length))) {
     return;  // the PC asks again
   }
-  serial::Body body;
-  begin(body, serial::Up::echoed);
-  for (uint8_t i = 0; i < length; ++i) {
-    body.put(payload[i]);
-  }
-  write(body);
+  serial::Body head;
+  begin(head, serial::Up::echoed);
+  write(session_, head.bytes(), head.length(), payload, length);
 }
 
 // --- up ------------------------------------------------------------------------------------------
@@ -414,7 +414,7 @@ ROIO_BRIDGE_FAST __attribute__((noinline)) inline void Session::write(uint32_t s
   line_.commit(serial::write_record(line_.sink(), session, body, length, more, more_length));
 }
 
-inline bool Session::passes(const uint8_t* tag_bytes) const {
+ROIO_BRIDGE_FAST inline bool Session::passes(const uint8_t* tag_bytes) const {
   const uint32_t tag = serial::get32(tag_bytes);
   for (uint8_t i = 0; i < rule_count_; ++i) {
     if (((tag ^ rules_[i].match) & rules_[i].mask) == 0) {

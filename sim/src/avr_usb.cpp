@@ -42,6 +42,8 @@ constexpr unsigned usbcon_after_reset = frzclk;
 constexpr unsigned detach = 0x01;
 constexpr unsigned sofi = 0x04;
 constexpr unsigned eorsti = 0x08;
+// UDADDR
+constexpr unsigned adden = 0x80;
 // UEINTX
 constexpr unsigned txini = 0x01;
 constexpr unsigned rxouti = 0x04;
@@ -253,12 +255,24 @@ void AvrUsb::write_data(std::uint16_t /*address*/, std::uint8_t value) {
   const bool takes = is_control(endpoint) ? (endpoint.flags & txini) != 0 : may_access(endpoint);
   if (takes && bank.bytes.size() < size_of(endpoint)) {
     bank.bytes.push_back(value);
+  } else {
+    violation("UEDATX written without room for a byte");
   }
 }
 
 std::uint8_t AvrUsb::read_data(std::uint16_t /*address*/) {
   Bank& bank = bank_to_read(selected());
-  return bank.read < bank.bytes.size() ? bank.bytes.at(bank.read++) : 0;
+  if (bank.read == bank.bytes.size()) {
+    violation("UEDATX read without a byte in it");
+    return 0;
+  }
+  return bank.bytes.at(bank.read++);
+}
+
+void AvrUsb::violation(const char* what) const {
+  if (violation_listener_) {
+    violation_listener_(what);
+  }
 }
 
 std::uint8_t AvrUsb::read_endpoint(std::uint16_t address) {
@@ -299,6 +313,11 @@ void AvrUsb::update_attachment() {
   if (attached != std::exchange(attached_, attached) && attach_listener_) {
     attach_listener_(attached);
   }
+}
+
+bool AvrUsb::listens_at(std::uint8_t address) const {
+  const unsigned set = core_.data(udaddr);
+  return ((set & adden) != 0 ? set & ~adden : 0U) == address;
 }
 
 void AvrUsb::bus_reset() {

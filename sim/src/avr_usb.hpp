@@ -26,6 +26,10 @@ class AvrUsb {
 
   explicit AvrUsb(AvrCore& core);
 
+  /// Called when the program does what a real device does not put up with.
+  void on_violation(std::function<void(const char*)> listener) {
+    violation_listener_ = std::move(listener);
+  }
   /// Called when the program attaches the device (true) or detaches it, also by a restart.
   void on_attach(std::function<void(bool)> listener) { attach_listener_ = std::move(listener); }
   void reset();
@@ -33,6 +37,9 @@ class AvrUsb {
   void interrupt_entered(const avr_int_vector_t& vector);
 
   // --- from the host -----------------------------------------------------------------------------
+
+  /// @param address 0: until the program has set one.
+  [[nodiscard]] bool listens_at(std::uint8_t address) const;
 
   void bus_reset();
   /// Every millisecond. @param number modulo 2048.
@@ -79,6 +86,7 @@ class AvrUsb {
   static void clear_flags(Endpoint& endpoint, std::uint8_t cleared);
 
   Endpoint& selected();
+  void violation(const char* what) const;
   void write_general(std::uint16_t address, std::uint8_t value);
   void write_device_flags(std::uint16_t address, std::uint8_t value);
   void write_reset(std::uint16_t address, std::uint8_t value);
@@ -99,6 +107,7 @@ class AvrUsb {
   avr_int_vector_t& general_vector_;
   avr_int_vector_t& endpoint_vector_;
   std::function<void(bool)> attach_listener_;
+  std::function<void(const char*)> violation_listener_;
 };
 
 }  // namespace roio::sim

@@ -163,7 +163,9 @@ Board::Machine::Machine(CanBus& bus, BoardKind kind, const std::filesystem::path
     (void)mcu_pin(*options.interrupt_pin);
   }
   if (model_.has_usb) {
-    add_serial(0, std::make_unique<UsbSerial>(core));
+    auto usb = std::make_unique<UsbSerial>(core);
+    usb->on_violation([this](const char* what) { violation(what); });
+    add_serial(0, std::move(usb));
   }
   for (const McuUart& made : model_.uarts) {
     add_serial(made.number, std::make_unique<AvrUart>(core, made.base));

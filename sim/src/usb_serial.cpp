@@ -1,6 +1,7 @@
 #include "usb_serial.hpp"
 
 #include <algorithm>
+#include <utility>
 
 namespace roio::sim {
 namespace {
@@ -18,6 +19,8 @@ constexpr std::uint16_t reset_frame = 3;
 constexpr std::uint16_t first_request_frame = 6;
 
 constexpr std::size_t packet_bytes = 64;
+/// Linux (cdc-acm) hands on what came when a packet is not full, or when there are so many bytes.
+constexpr std::size_t handed_on_bytes = 128;
 constexpr std::uint8_t device_address = 1;
 // Requests
 constexpr std::uint8_t to_device = 0x00;
@@ -82,6 +85,8 @@ void UsbSerial::attached(bool is_attached) {
     return;
   }
   step_ = Step::settle;
+  address_ = 0;
+  from_board_.clear();
   frames_ = 0;
   core_.at<&UsbSerial::frame>(core_.cycle() + frame_cycles, *this);
 }
@@ -153,6 +158,7 @@ void UsbSerial::done() {
   if (is_short || (step_ == Step::configuration && !find_port())) {
     return begin(Step::refused);
   }
+  address_ = step_ == Step::address ? device_address : address_;
   begin(static_cast<Step>(static_cast<int>(step_) + 1));
 }
 
@@ -197,9 +203,10 @@ AvrUsb::Answer UsbSerial::transfer_status() {
 }
 
 Cycle UsbSerial::control(Cycle when) {
-  const AvrUsb::Answer answer = transfer_.stage == Stage::setup  ? usb_.setup(transfer_.setup)
-                                : transfer_.stage == Stage::data ? transfer_data()
-                                                                 : transfer_status();
+  const AvrUsb::Answer answer = !usb_.listens_at(address_)        ? AvrUsb::Answer::none
+                                : transfer_.stage == Stage::setup ? usb_.setup(transfer_.setup)
+                                : transfer_.stage == Stage::data  ? transfer_data()
+                                                                  : transfer_status();
   if (answer == AvrUsb::Answer::stall || answer == AvrUsb::Answer::none) {
     begin(Step::refused);
   } else if (answer == AvrUsb::Answer::ack) {
@@ -252,8 +259,11 @@ Cycle UsbSerial::bulk_in(Cycle when) {
   }
   const Cycle end = when + duration_of(packet.size());
   counters().sent += packet.size();
-  for (const std::uint8_t byte : packet) {
-    send(end, byte);
+  from_board_.insert(from_board_.end(), packet.begin(), packet.end());
+  if (packet.size() < packet_bytes || from_board_.size() >= handed_on_bytes) {
+    for (const std::uint8_t byte : std::exchange(from_board_, {})) {
+      send(end, byte);
+    }
   }
   return end;
 }

@@ -18,6 +18,11 @@ class UsbSerial final : public AvrSerial {
  public:
   explicit UsbSerial(AvrCore& core);
 
+  /// Called when the program does what a real device does not put up with.
+  void on_violation(std::function<void(const char*)> listener) {
+    usb_.on_violation(std::move(listener));
+  }
+
   void receive(std::span<const std::uint8_t> bytes) override;
   [[nodiscard]] std::size_t waiting() const override { return to_board_.size(); }
   [[nodiscard]] std::optional<double> bitrate_bps() const override { return std::nullopt; }
@@ -81,7 +86,9 @@ class UsbSerial final : public AvrSerial {
   unsigned in_endpoint_ = 0;
   unsigned out_endpoint_ = 0;
   std::uint8_t control_interface_ = 0;
+  std::uint8_t address_ = 0;
   std::deque<std::uint8_t> to_board_;
+  Bytes from_board_;  // that the PC has not handed on
 };
 
 }  // namespace roio::sim

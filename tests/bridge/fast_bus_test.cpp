@@ -11,10 +11,13 @@ namespace {
 struct FastBus {
   std::uint32_t line_bps;
   int length;
+  sim::BoardKind kind = sim::BoardKind::uno;
 };
 
 std::string name_of(const testing::TestParamInfo<FastBus>& row) {
-  return std::to_string(row.param.line_bps) + "_" + std::to_string(row.param.length);
+  return std::to_string(row.param.length) + "_" +
+         (row.param.kind == sim::BoardKind::leonardo ? "OverUsb"
+                                                     : std::to_string(row.param.line_bps));
 }
 
 class OneMegabit : public testing::TestWithParam<FastBus> {
@@ -51,7 +54,7 @@ class OneMegabit : public testing::TestWithParam<FastBus> {
     rig.records.clear();
   }
 
-  BridgeRig rig;
+  BridgeRig rig{GetParam().kind};
   sim::HostNode fast{rig.bus, fast_bps};
   std::uint32_t sent = 0;
   std::uint32_t next = 0;
@@ -83,7 +86,9 @@ TEST_P(OneMegabit, WhatIsLostIsTold) {
 
 INSTANTIATE_TEST_SUITE_P(Bridge, OneMegabit,
                          testing::Values(FastBus{2'000'000, 0}, FastBus{2'000'000, 4},
-                                         FastBus{2'000'000, 8}, FastBus{1'000'000, 8}),
+                                         FastBus{2'000'000, 8}, FastBus{1'000'000, 8},
+                                         FastBus{2'000'000, 0, sim::BoardKind::leonardo},
+                                         FastBus{2'000'000, 8, sim::BoardKind::leonardo}),
                          name_of);
 
 }  // namespace

