@@ -77,14 +77,28 @@ static bool takeBytes() {
   return true;
 }
 
-static void takeFromPc(bool mayWait) {
+// Whether a frame may wait in the chip. Without an INT line nobody knows; so it is looked at after
+// each thing that takes long.
+static bool busCalls(bool didSomething) {
+  return didSomething ? !can.is_quiet() : can.has_received();
+}
+
+// @return whether there was anything to do.
+static bool takeFromPc(bool mayWait) {
   // More come meanwhile: a record is served as soon as its last byte is there.
   constexpr uint8_t mostTries = 8;
-  for (uint8_t tries = mostTries; tries != 0 && takeBytes() && can.is_quiet(); --tries) {
+  bool didSomething = false;
+  for (uint8_t tries = mostTries; tries != 0 && takeBytes(); --tries) {
+    didSomething = true;
+    if (!can.is_quiet()) {
+      break;
+    }
   }
-  if (session.has_record() && !(mayWait && can.has_received())) {
+  if (session.has_record() && !(mayWait && busCalls(didSomething))) {
     session.serve();
+    didSomething = true;
   }
+  return didSomething;
 }
 
 void setup() {
@@ -107,8 +121,8 @@ void loop() {
     return;
   }
   isTime = clock.update() || isTime;  // about every millisecond
-  takeFromPc(mayWait);
-  if (mayWait && can.has_received()) {
+  const bool didSomething = takeFromPc(mayWait);
+  if (mayWait && busCalls(didSomething)) {
     return;
   }
   inARow = 0;
