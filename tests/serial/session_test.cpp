@@ -127,7 +127,7 @@ TEST(SerialSession, TellsTheBridgeItsSettings) {
   Line line({.bitrate_bps = 125'000,
              .mode = BridgeMode::listen,
              .address = Address{3, 200},
-             .rules = std::vector<SerialRule>{{0x90004000, 0xE3FFE000}, {1, 2}}});
+             .rules = std::vector<serial::Rule>{{0x90004000, 0xE3FFE000}, {1, 2}}});
   line.open();
   EXPECT_EQ(line.bridge.bitrate_bps, 125'000U);
   EXPECT_EQ(line.bridge.mode, 1);

@@ -38,7 +38,7 @@ constexpr std::size_t max_filters = 512;  // as many as SocketCAN takes
 constexpr std::size_t receive_capacity = 16384;
 constexpr milliseconds clock_step{50};  // of the wall clock, that somebody has set
 
-SerialSettings settings_of(const BusUrl& url, std::vector<SerialRule> rules) {
+SerialSettings settings_of(const BusUrl& url, std::vector<serial::Rule> rules) {
   SerialSettings settings;
   settings.line_rate_bps = url.baud.value_or(settings.line_rate_bps);
   settings.bitrate_bps = url.bitrate;
@@ -48,7 +48,7 @@ SerialSettings settings_of(const BusUrl& url, std::vector<SerialRule> rules) {
 }
 
 /// The filters as the bridge can have them: exactly, or everything when it cannot.
-std::vector<SerialRule> rules_of(std::span<const SocketCanFilter> filters) {
+std::vector<serial::Rule> rules_of(std::span<const SocketCanFilter> filters) {
   const bool fits = filters.size() <= max_rules &&
                     std::none_of(filters.begin(), filters.end(), [](const SocketCanFilter& one) {
                       return (one.can_id & socketcan::inverted) != 0;
@@ -56,7 +56,7 @@ std::vector<SerialRule> rules_of(std::span<const SocketCanFilter> filters) {
   if (!fits) {
     return {{0, 0}};
   }
-  std::vector<SerialRule> rules;
+  std::vector<serial::Rule> rules;
   for (const SocketCanFilter& filter : filters) {
     const std::uint32_t mask = effective_mask(filter);
     rules.push_back({filter.can_id & mask, mask});

@@ -32,9 +32,6 @@ constexpr milliseconds request_interval{100};
 constexpr unsigned max_tries = 4;
 constexpr unsigned max_unanswered_speeds = 2;
 
-// Short, so that they find room in a bridge whose bus is busy.
-constexpr unsigned echo_count = 4;
-constexpr std::size_t echo_length = 24;
 constexpr int tolerable_in_trial = 1;    // damaged records: the change of rate may make one
 constexpr int tolerable_of_history = 7;  // of 64
 constexpr unsigned polls_per_counters = 10;
@@ -78,48 +75,9 @@ Record hello_of(std::uint32_t session) {
   return record;
 }
 
-void append32(std::vector<std::uint8_t>& bytes, std::uint32_t value) {
-  for (int shift = 24; shift >= 0; shift -= 8) {
-    bytes.push_back(static_cast<std::uint8_t>(value >> shift));
-  }
-}
-
-std::vector<std::uint8_t> bus_payload(std::uint32_t bitrate_bps, BridgeMode mode) {
-  std::vector<std::uint8_t> payload;
-  append32(payload, bitrate_bps);
-  payload.push_back(static_cast<std::uint8_t>(mode));
-  return payload;
-}
-
-std::vector<std::uint8_t> filter_payload(const std::vector<SerialRule>& rules) {
-  std::vector<std::uint8_t> payload{static_cast<std::uint8_t>(rules.size())};
-  for (const SerialRule& rule : rules) {
-    append32(payload, rule.match);
-    append32(payload, rule.mask);
-  }
-  return payload;
-}
-
-// All levels and edges: zeros, ones, alternating bits, and all kinds of bytes.
-std::array<std::uint8_t, echo_length> echo_pattern(unsigned number) {
-  constexpr std::array<std::uint8_t, 3> constant{0x00, 0xFF, 0x55};
-  std::array<std::uint8_t, echo_length> pattern{};
-  for (std::size_t i = 0; i < pattern.size(); ++i) {
-    pattern.at(i) =
-        number < constant.size() ? constant.at(number) : static_cast<std::uint8_t>(i * 0x9D + 0x6B);
-  }
-  pattern[0] = static_cast<std::uint8_t>(number);
-  return pattern;
-}
-
 bool is_kept(const SerialSession::Reply& reply) {
   return reply.kind == SerialSession::Reply::Kind::answered &&
          reply.status != Status::bad_argument && reply.status != Status::bad_timing;
-}
-
-std::optional<Address> address_of(const std::uint8_t* bytes) {
-  const Address address{bytes[0], bytes[1]};
-  return is_broadcast(address) ? std::nullopt : std::optional(address);
 }
 
 }  // namespace
@@ -323,9 +281,8 @@ void SerialSession::ask_speed(unsigned index, Time now) {
   phase_ = Phase::speeding;
   new_rate_ = index;
   speed_until_ = now + speed_timeout;
-  std::vector<std::uint8_t> payload{++last_request_};
-  append32(payload, rate_bps(static_cast<std::uint8_t>(index)));
-  write_control(Down::speed, payload);
+  write_numbered(Down::speed, ++last_request_,
+                 speed_payload(rate_bps(static_cast<std::uint8_t>(index))));
 }
 
 /// The bridge may have changed its rate or not: only HELLO at the base rate is sure.
@@ -354,14 +311,14 @@ void SerialSession::send_echoes(Time now) {
   echo_at_ = now + echo_interval;
   for (unsigned i = 0; i < echo_count; ++i) {
     if ((echoes_missing_ >> i & 1U) != 0) {
-      write_control(Down::echo, echo_pattern(i));
+      write_control(Down::echo, echo_payload(i));
     }
   }
 }
 
 bool SerialSession::take_echoed(std::span<const std::uint8_t> payload, Time now) {
   const unsigned number = payload.empty() ? echo_count : payload[0];
-  if (number >= echo_count || !std::ranges::equal(payload, echo_pattern(number))) {
+  if (number >= echo_count || !std::ranges::equal(payload, echo_payload(number))) {
     return false;
   }
   if (phase_ != Phase::trying) {
@@ -412,7 +369,7 @@ void SerialSession::set_bus(std::uint32_t bitrate_bps, BridgeMode mode, Time now
         now);
 }
 
-void SerialSession::set_rules(std::vector<SerialRule> rules, Time now, Done done) {
+void SerialSession::set_rules(std::vector<Rule> rules, Time now, Done done) {
   settings_.rules = std::move(rules);
   queue({Down::filter, filter_payload(*settings_.rules), std::move(done)}, now);
 }
@@ -486,9 +443,7 @@ void SerialSession::ask(Request request, Time now) {
 void SerialSession::write_request(Time now) {
   const Request& request = asked_->request;
   asked_->repeat_at = now + interval_of(request.operation);
-  std::vector<std::uint8_t> payload{asked_->number};
-  payload.insert(payload.end(), request.payload.begin(), request.payload.end());
-  write_control(request.operation, payload);
+  write_numbered(request.operation, asked_->number, request.payload);
 }
 
 void SerialSession::repeat_request(Time now) {
@@ -694,58 +649,27 @@ bool SerialSession::take_frame(std::span<const std::uint8_t> body, Time now) {
 }
 
 bool SerialSession::take_welcome(std::span<const std::uint8_t> payload, Time now) {
-  constexpr std::size_t firmware_at = 13;
   if (payload.empty()) {
     return false;
   }
   if (payload[0] != protocol_version) {
-    other_version_ = OtherVersion{payload[0], std::nullopt};
-    if (payload.size() >= firmware_at + 3) {
-      other_version_->firmware =
-          FirmwareVersion{payload[firmware_at], payload[firmware_at + 1], payload[firmware_at + 2]};
-    }
+    other_version_ = OtherVersion{payload[0], firmware_of(payload)};
     return true;
   }
-  if (payload.size() != welcome_length - control_head) {
-    return false;
-  }
+  const std::optional<Welcome> welcome = read_welcome(payload);
   // Not calling: HELLO was repeated, and this is the answer to that. Another number: an old answer.
-  if (phase_ != Phase::calling || get32(&payload[1]) != session_) {
-    return true;
+  if (welcome && phase_ == Phase::calling && welcome->session == session_) {
+    open_session(*welcome, now);
   }
-  if (!read_welcome(payload)) {
-    return false;
-  }
-  open_session(payload, now);
-  return true;
+  return welcome.has_value();
 }
 
-bool SerialSession::read_welcome(std::span<const std::uint8_t> payload) {
-  constexpr std::size_t at = 13;  // firmware
-  const std::uint8_t mode = payload[at + 12];
-  if (payload[at + 5] != window || mode > static_cast<std::uint8_t>(BridgeMode::loopback)) {
-    return false;
+void SerialSession::open_session(const Welcome& welcome, Time now) {
+  if (welcome.previous_session != no_session && welcome.previous_session == last_session_) {
+    up_.settle(welcome.previous_due);
   }
-  info_.firmware = {payload[at], payload[at + 1], payload[at + 2]};
-  info_.board = payload[at + 3] <= static_cast<std::uint8_t>(BridgeBoard::mega)
-                    ? static_cast<BridgeBoard>(payload[at + 3])
-                    : BridgeBoard::other;
-  info_.line_rate_matters = (payload[at + 4] & rate_matters) != 0;
-  info_.interrupt_wired = (payload[at + 4] & interrupt_is_wired) != 0;
-  info_.osc_khz = get16(&payload[at + 6]);
-  info_.bitrate_bps = get32(&payload[at + 8]);
-  info_.mode = static_cast<BridgeMode>(mode);
-  info_.address = address_of(&payload[at + 13]);
-  info_.state = BridgeState::absent;
-  rates_ = payload[at + 15];
-  return true;
-}
-
-void SerialSession::open_session(std::span<const std::uint8_t> payload, Time now) {
-  const std::uint32_t previous = get32(&payload[5]);
-  if (previous != no_session && previous == last_session_) {
-    up_.settle(get32(&payload[9]));
-  }
+  info_ = welcome.info;
+  rates_ = welcome.rates;
   up_.begin();
   clock_.begin();
   last_session_ = session_;
@@ -761,45 +685,23 @@ void SerialSession::open_session(std::span<const std::uint8_t> payload, Time now
 }
 
 bool SerialSession::take_status(std::span<const std::uint8_t> payload, Time now) {
-  if (payload.size() != status_length - control_head ||
-      payload[8] > static_cast<std::uint8_t>(BridgeState::stuck) ||
-      !clock_.status(get32(payload.data()), now) || !up_.settle(get32(&payload[4]))) {
+  const std::optional<BridgeStatus> status = read_status(payload);
+  if (!status || !clock_.status(status->ticks, now) || !up_.settle(status->due)) {
     return false;
   }
-  const BridgeState before = std::exchange(info_.state, static_cast<BridgeState>(payload[8]));
-  info_.transmit_errors = payload[9];
-  info_.receive_errors = payload[10];
+  const BridgeState before = std::exchange(info_.state, status->state);
+  info_.transmit_errors = status->transmit_errors;
+  info_.receive_errors = status->receive_errors;
   counters_wanted_ = counters_wanted_ || before != info_.state;
   return true;
 }
 
-/// They come in several records, which make a report when all have come.
 bool SerialSession::take_counters(std::span<const std::uint8_t> payload) {
-  constexpr std::array<std::uint32_t BridgeCounters::*, counter_count> order{
-      &BridgeCounters::dropped,        &BridgeCounters::overflows,   &BridgeCounters::sent,
-      &BridgeCounters::not_sent,       &BridgeCounters::unknown,     &BridgeCounters::bus_offs,
-      &BridgeCounters::message_errors, &BridgeCounters::chip_losses, &BridgeCounters::discarded,
-      &BridgeCounters::damaged,        &BridgeCounters::overruns};
-  const std::size_t count = payload.size() / 4;
-  if (payload.size() != 1 + 4 * count || count < 1 || count > counters_at_once ||
-      payload[0] + count > order.size()) {
-    return false;
-  }
-  if (payload[0] == 0) {
-    counters_so_far_ = 0;
-  }
-  if (payload[0] != counters_so_far_) {
-    return true;  // some before these were lost
-  }
-  for (std::size_t i = 0; i < count; ++i) {
-    next_counters_.*order.at(counters_so_far_++) = get32(&payload[1 + 4 * i]);
-  }
-  if (counters_so_far_ == order.size()) {
-    bridge_counters_ = next_counters_;
+  const CounterReports::Event event = reports_.take(payload);
+  if (event == CounterReports::Event::complete) {
     counters_wanted_ = false;
-    ++counter_reports_;
   }
-  return true;
+  return event != CounterReports::Event::nonsense;
 }
 
 // --- outgoing records ----------------------------------------------------------------------------
@@ -821,6 +723,14 @@ void SerialSession::write_control(Down operation, std::span<const std::uint8_t> 
       writer.put(byte);
     }
   });
+}
+
+/// What is answered by REPLY.
+void SerialSession::write_numbered(Down operation, std::uint8_t number,
+                                   std::span<const std::uint8_t> payload) {
+  std::vector<std::uint8_t> numbered{number};
+  numbered.insert(numbered.end(), payload.begin(), payload.end());
+  write_control(operation, numbered);
 }
 
 void SerialSession::poll(Time now) {

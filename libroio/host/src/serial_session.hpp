@@ -29,15 +29,11 @@
 
 #include "serial_clock.hpp"
 #include "serial_down.hpp"
+#include "serial_payloads.hpp"
+#include "serial_reports.hpp"
 #include "serial_up.hpp"
 
 namespace roio {
-
-/// One rule of FILTER, compared as tags (frame.hpp).
-struct SerialRule {
-  std::uint32_t match;
-  std::uint32_t mask;
-};
 
 struct SerialSettings {
   std::uint32_t line_rate_bps = 1'000'000;     ///< The highest to be used.
@@ -45,7 +41,7 @@ struct SerialSettings {
   std::optional<BridgeMode> mode{};            ///< None: as the bridge has it.
   std::optional<Address> address{};            ///< None: as the bridge has it.
   /// At most serial::max_rules, of which one must match; none: as the bridge has them.
-  std::optional<std::vector<SerialRule>> rules{};
+  std::optional<std::vector<serial::Rule>> rules{};
 };
 
 // NOLINTNEXTLINE(clang-analyzer-optin.performance.Padding): members stand by what they are for
@@ -142,7 +138,7 @@ class SerialSession {
 
   // Settings are kept for further sessions once the bridge has taken them; rules in any case.
   void set_bus(std::uint32_t bitrate_bps, BridgeMode mode, Time now, Done done);
-  void set_rules(std::vector<SerialRule> rules, Time now, Done done);
+  void set_rules(std::vector<serial::Rule> rules, Time now, Done done);
   void set_address(Address address, Time now, Done done);
   void identify(std::uint8_t seconds, Time now, Done done);
   /// Ends the session; the phase is `closed` after it.
@@ -155,8 +151,8 @@ class SerialSession {
   [[nodiscard]] Phase phase() const { return phase_; }
   /// port is empty.
   [[nodiscard]] BridgeInfo info() const;
-  [[nodiscard]] const BridgeCounters& bridge_counters() const { return bridge_counters_; }
-  [[nodiscard]] std::uint64_t counter_reports() const { return counter_reports_; }
+  [[nodiscard]] const BridgeCounters& bridge_counters() const { return reports_.counters(); }
+  [[nodiscard]] std::uint64_t counter_reports() const { return reports_.count(); }
   [[nodiscard]] const Counters& counters() const { return counters_; }
   /// Since begin(): why there is no session though a bridge answers.
   [[nodiscard]] const std::optional<OtherVersion>& other_version() const { return other_version_; }
@@ -181,7 +177,6 @@ class SerialSession {
   bool take_control(std::span<const std::uint8_t> body, Time now);
   bool take_frame(std::span<const std::uint8_t> body, Time now);
   bool take_welcome(std::span<const std::uint8_t> payload, Time now);
-  bool read_welcome(std::span<const std::uint8_t> payload);
   bool take_status(std::span<const std::uint8_t> payload, Time now);
   bool take_counters(std::span<const std::uint8_t> payload);
   bool take_results(std::span<const std::uint8_t> payload, Time now);
@@ -194,6 +189,8 @@ class SerialSession {
   template <typename Body>
   void write(std::uint32_t session, const Body& body);
   void write_control(serial::Down operation, std::span<const std::uint8_t> payload);
+  void write_numbered(serial::Down operation, std::uint8_t number,
+                      std::span<const std::uint8_t> payload);
   void say_hello(Time now);
   void poll(Time now);
   void send_frames(Time now);
@@ -204,7 +201,7 @@ class SerialSession {
   void call(Time now);
   void lose(Time now);
   void refuse(Status status, Time now);
-  void open_session(std::span<const std::uint8_t> payload, Time now);
+  void open_session(const serial::Welcome& welcome, Time now);
   void go_on(Time now);
   void set_up_bus(Time now);
   void serve_timers(Time now);
@@ -270,10 +267,7 @@ class SerialSession {
   // What is known of the bridge.
   BridgeInfo info_;
   std::uint8_t rates_ = 0;
-  BridgeCounters bridge_counters_;
-  BridgeCounters next_counters_;     // of the report that is coming in
-  std::size_t counters_so_far_ = 0;  // of it
-  std::uint64_t counter_reports_ = 0;
+  serial::CounterReports reports_;
   bool counters_wanted_ = false;
   std::optional<OtherVersion> other_version_;
   std::optional<Status> refusal_;
