@@ -98,7 +98,7 @@ class AttachTest(BridgeTest):
         self.send("--count", "5000", "vcan0", "0.2", "01")
         attach.process.send_signal(signal.SIGCONT)
         self.send("vcan0", "0.2", "02")
-        behind = self.dump("-n", "1", "-T", "90000", "local:robot", "to=0.3")
+        behind = self.dump("-n", "1", "-T", "55000", "local:robot", "to=0.3")
         run("cansend", "vcan0", "1000600A#03")
         self.assertEqual(behind.result()[0], 0)
         err = attach.result()[2]
