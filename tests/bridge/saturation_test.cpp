@@ -190,7 +190,7 @@ INSTANTIATE_TEST_SUITE_P(Bridge, BridgeLoad,
                                          Load{true, true, 8, 0.99, sim::BoardKind::leonardo},
                                          Load{true, false, 0, 0.99, sim::BoardKind::uno, false},
                                          Load{false, true, 8, 0.79, sim::BoardKind::uno, false},
-                                                                          Load{true, true, 4, 0.99, sim::BoardKind::uno, false},
+                                         Load{true, true, 4, 0.99, sim::BoardKind::uno, false},
                                          Load{true, true, 8, 0.99, sim::BoardKind::uno, false}),
                          name_of);
 
