@@ -125,13 +125,13 @@ class Session {
   void send_status();
   void send_counters();
   void send_results();
-  void write(uint32_t session, const uint8_t* body, uint8_t length, const uint8_t* more,
-             uint8_t more_length);
+  void write(uint32_t session, const uint8_t* body, uint8_t length, const uint8_t* more = nullptr,
+             uint8_t more_length = 0);
   void begin(serial::Body& body, serial::Up operation) const {
     body.put(static_cast<uint8_t>(operation));
     body.put(static_cast<uint8_t>(due_));
   }
-  void write(const serial::Body& body) { write(session_, body.bytes(), body.length(), nullptr, 0); }
+  void write(const serial::Body& body) { write(session_, body.bytes(), body.length()); }
   bool has_room(uint8_t body_length) const {
     return line_.room() >= static_cast<uint8_t>(body_length + record_overhead);
   }
@@ -556,7 +556,7 @@ inline void Session::send_welcome() {
   body.put(node_.address().subnet);
   body.put(node_.address().node);
   body.put((1U << serial::rate_count) - 1U);
-  write(serial::no_session, body.bytes(), body.length(), nullptr, 0);
+  write(serial::no_session, body.bytes(), body.length());
 }
 
 inline void Session::send_status() {

@@ -271,25 +271,23 @@ AvrCore::Cycle AvrCore::effect_cycle() const {
 // --- interrupts ----------------------------------------------------------------------------------
 
 avr_int_vector_t& AvrCore::vector(std::uint16_t enable_register, unsigned enable_bit) const {
-  const avr_int_table_t& table = avr_->interrupts;
-  for (int i = 0; i < table.vector_count; ++i) {
-    avr_int_vector_t& vector = *table.vector[i];
-    if (vector.enable.reg == enable_register && vector.enable.bit == enable_bit) {
-      return vector;
-    }
+  avr_int_vector_t* const found = find_vector([&](const avr_int_vector_t& vector) {
+    return vector.enable.reg == enable_register && vector.enable.bit == enable_bit;
+  });
+  if (found == nullptr) {
+    throw std::logic_error("this libsimavr lacks an interrupt that is enabled at " +
+                           hexadecimal(enable_register));
   }
-  throw std::logic_error("this libsimavr lacks an interrupt that is enabled at " +
-                         hexadecimal(enable_register));
+  return *found;
 }
 
 avr_int_vector_t& AvrCore::vector(unsigned number) const {
-  const avr_int_table_t& table = avr_->interrupts;
-  for (int i = 0; i < table.vector_count; ++i) {
-    if (table.vector[i]->vector == number) {
-      return *table.vector[i];
-    }
+  avr_int_vector_t* const found =
+      find_vector([&](const avr_int_vector_t& vector) { return vector.vector == number; });
+  if (found == nullptr) {
+    throw std::logic_error("this libsimavr lacks interrupt " + std::to_string(number));
   }
-  throw std::logic_error("this libsimavr lacks interrupt " + std::to_string(number));
+  return *found;
 }
 
 // simavr queues a vector anew each time, also when the one that was cleared is still in its queue;

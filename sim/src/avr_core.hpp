@@ -4,6 +4,7 @@
 #ifndef ROIO_SIM_AVR_CORE_HPP
 #define ROIO_SIM_AVR_CORE_HPP
 
+#include <algorithm>
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -106,6 +107,15 @@ class AvrCore {
     };
   }
   [[nodiscard]] std::uint16_t opcode() const;
+  /// @return none: nullptr.
+  template <typename IsIt>
+  [[nodiscard]] avr_int_vector_t* find_vector(const IsIt& is_it) const {
+    const avr_int_table_t& table = avr_->interrupts;
+    const auto* const end = table.vector + table.vector_count;
+    const auto* const found = std::find_if(
+        table.vector, end, [&](const avr_int_vector_t* vector) { return is_it(*vector); });
+    return found != end ? *found : nullptr;
+  }
   static void log(avr_t* avr, int level, const char* format, va_list arguments);
 
   void make_room() const;

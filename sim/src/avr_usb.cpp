@@ -97,9 +97,7 @@ AvrUsb::AvrUsb(AvrCore& core)
 }
 
 void AvrUsb::reset() {
-  for (Endpoint& endpoint : endpoints_) {
-    endpoint = {};
-  }
+  endpoints_ = {};
   for (std::uint16_t address = usbcon; address <= ueint; ++address) {
     core_.data(address) = 0;
   }
@@ -165,6 +163,12 @@ void AvrUsb::release_bank(Endpoint& endpoint) {
     bank = {};
   }
   endpoint.program_at = (endpoint.program_at + 1) % bank_count(endpoint);
+  offer_bank(endpoint);
+}
+
+/// The host is done with its bank.
+void AvrUsb::pass_bank(Endpoint& endpoint) {
+  endpoint.host_at = (endpoint.host_at + 1) % bank_count(endpoint);
   offer_bank(endpoint);
 }
 
@@ -277,11 +281,7 @@ void AvrUsb::violation(const char* what) const {
 
 std::uint8_t AvrUsb::read_endpoint(std::uint16_t address) {
   if (address == ueint) {
-    unsigned waiting = 0;
-    for (std::size_t i = 0; i < endpoint_count; ++i) {
-      waiting |= (endpoints_.at(i).flags & endpoints_.at(i).enables) != 0 ? 1U << i : 0U;
-    }
-    return static_cast<std::uint8_t>(waiting);
+    return waiting_endpoints();
   }
   Endpoint& endpoint = selected();
   switch (address) {
@@ -321,9 +321,7 @@ bool AvrUsb::listens_at(std::uint8_t address) const {
 }
 
 void AvrUsb::bus_reset() {
-  for (Endpoint& endpoint : endpoints_) {
-    endpoint = {};
-  }
+  endpoints_ = {};
   core_.data(udaddr) = 0;
   core_.data(udint) |= eorsti;
   update_interrupts();
@@ -369,8 +367,7 @@ AvrUsb::Answer AvrUsb::out(unsigned number, std::span<const std::uint8_t> bytes)
   if (is_control(endpoint)) {
     endpoint.flags |= rxouti;
   } else {
-    endpoint.host_at = (endpoint.host_at + 1) % bank_count(endpoint);
-    offer_bank(endpoint);
+    pass_bank(endpoint);
   }
   update_interrupts();
   return Answer::ack;
@@ -392,8 +389,7 @@ AvrUsb::Answer AvrUsb::in(unsigned number, std::vector<std::uint8_t>& bytes) {
   if (is_control(endpoint)) {
     endpoint.flags |= txini;
   } else {
-    endpoint.host_at = (endpoint.host_at + 1) % bank_count(endpoint);
-    offer_bank(endpoint);
+    pass_bank(endpoint);
   }
   update_interrupts();
   return Answer::ack;
@@ -401,10 +397,13 @@ AvrUsb::Answer AvrUsb::in(unsigned number, std::vector<std::uint8_t>& bytes) {
 
 // --- interrupts ----------------------------------------------------------------------------------
 
-bool AvrUsb::endpoint_wants_interrupt() const {
-  return std::any_of(endpoints_.begin(), endpoints_.end(), [](const Endpoint& endpoint) {
-    return (endpoint.flags & endpoint.enables) != 0;
-  });
+/// Those that ask for an interrupt, a bit each, as UEINT has them.
+std::uint8_t AvrUsb::waiting_endpoints() const {
+  unsigned waiting = 0;
+  for (std::size_t i = 0; i < endpoint_count; ++i) {
+    waiting |= (endpoints_.at(i).flags & endpoints_.at(i).enables) != 0 ? 1U << i : 0U;
+  }
+  return static_cast<std::uint8_t>(waiting);
 }
 
 void AvrUsb::update(avr_int_vector_t& vector, std::uint8_t enable_bit, bool wanted) {
@@ -420,7 +419,7 @@ void AvrUsb::update(avr_int_vector_t& vector, std::uint8_t enable_bit, bool want
 
 void AvrUsb::update_interrupts() {
   update(general_vector_, general_enable, (core_.data(udint) & core_.data(udien)) != 0);
-  update(endpoint_vector_, endpoint_enable, endpoint_wants_interrupt());
+  update(endpoint_vector_, endpoint_enable, waiting_endpoints() != 0);
 }
 
 void AvrUsb::interrupt_entered(const avr_int_vector_t& vector) {

@@ -83,6 +83,7 @@ class AvrUsb {
   static void offer_bank(Endpoint& endpoint);
   static void clear_endpoint(Endpoint& endpoint);
   static void release_bank(Endpoint& endpoint);
+  static void pass_bank(Endpoint& endpoint);
   static void clear_flags(Endpoint& endpoint, std::uint8_t cleared);
 
   Endpoint& selected();
@@ -99,7 +100,7 @@ class AvrUsb {
   void update_attachment();
   void update_interrupts();
   void update(avr_int_vector_t& vector, std::uint8_t enable_bit, bool wanted);
-  [[nodiscard]] bool endpoint_wants_interrupt() const;
+  [[nodiscard]] std::uint8_t waiting_endpoints() const;
 
   AvrCore& core_;
   std::array<Endpoint, endpoint_count> endpoints_{};

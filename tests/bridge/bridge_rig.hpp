@@ -27,6 +27,9 @@ using Bytes = std::vector<std::uint8_t>;
 
 constexpr std::uint32_t bitrate_bps = 500'000;
 constexpr std::uint32_t session_number = 0x52AB0149;
+// In COUNTERS.
+constexpr int dropped_counter = 0;
+constexpr int overflow_counter = 1;
 
 inline std::filesystem::path bridge_image(sim::BoardKind kind) {
   const char* const folder = kind == sim::BoardKind::uno        ? "uno"
@@ -124,6 +127,12 @@ struct BridgeRig {
       }
     }
     return std::nullopt;
+  }
+  /// SPEED, and the trial that a PC makes of it.
+  void set_line_rate(std::uint32_t rate_bps) {
+    ASSERT_EQ(request(serial::Down::speed, bytes_of(rate_bps)), Status::ok);
+    bus.run_for(5ms);
+    ask_status();
   }
   /// Asks for it and gives the answer's payload; the session must be open.
   Bytes ask_status() {

@@ -23,16 +23,12 @@ std::string name_of(const testing::TestParamInfo<FastBus>& row) {
 class OneMegabit : public testing::TestWithParam<FastBus> {
  protected:
   static constexpr std::uint32_t fast_bps = 1'000'000;
-  static constexpr int dropped = 0;    // in COUNTERS
-  static constexpr int overflows = 1;  // the same
 
   void SetUp() override {
     rig.hello();
     rig.node.controller().set_mode(sim::Controller::Mode::off);
     ASSERT_EQ(rig.request(serial::Down::bus, bytes_of(fast_bps) + Bytes{0}), Status::ok);
-    ASSERT_EQ(rig.request(serial::Down::speed, bytes_of(GetParam().line_bps)), Status::ok);
-    rig.bus.run_for(5ms);
-    rig.ask_status();
+    ASSERT_NO_FATAL_FAILURE(rig.set_line_rate(GetParam().line_bps));
     rig.records.clear();
     fast.on_sent([this](const Frame& /*frame*/) { give(); });
   }
@@ -74,14 +70,14 @@ TEST_P(OneMegabit, WhatIsLostIsTold) {
   rig.bus.run_for(100ms);
   take();
   const auto lost = static_cast<std::uint32_t>(rig.board.chip().events().overflowed - lost_before);
-  const std::uint32_t times = rig.counter(overflows);
-  EXPECT_EQ(received + rig.counter(dropped) + lost, sent);
+  const std::uint32_t times = rig.counter(overflow_counter);
+  EXPECT_EQ(received + rig.counter(dropped_counter) + lost, sent);
   EXPECT_EQ(times > 0, lost > 0);
   EXPECT_LE(times, lost);
   EXPECT_EQ(rig.damaged, 0);
   EXPECT_GT(received, sent / 2);
   std::printf("of %u frames %u arrived, %u found no room, the controller lost %u in %u times\n",
-              sent, received, rig.counter(dropped), lost, times);
+              sent, received, rig.counter(dropped_counter), lost, times);
 }
 
 INSTANTIATE_TEST_SUITE_P(Bridge, OneMegabit,

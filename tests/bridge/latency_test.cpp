@@ -29,17 +29,15 @@ class Latency : public testing::TestWithParam<Course> {
   void SetUp() override {
     rig.hello();
     if (GetParam().line_bps != serial::base_rate_bps) {
-      ASSERT_EQ(rig.request(serial::Down::speed, bytes_of(GetParam().line_bps)), Status::ok);
-      rig.bus.run_for(5ms);
-      rig.ask_status();
+      ASSERT_NO_FATAL_FAILURE(rig.set_line_rate(GetParam().line_bps));
     }
-    rig.node.on_receive([this](const Frame& frame) {
-      Frame back = frame;
-      back.id ^= 1;
-      rig.node.send(back);
-    });
+    rig.node.on_receive([this](const Frame& frame) { rig.node.send(answer_to(frame)); });
   }
 
+  static Frame answer_to(Frame frame) {
+    frame.id ^= 1;
+    return frame;
+  }
   Frame random_frame() {
     Frame frame = extended(up_to(generator, 0x1FFFFFFE), {});
     frame.length = static_cast<std::uint8_t>(GetParam().length);
@@ -64,9 +62,7 @@ class Latency : public testing::TestWithParam<Course> {
   double round_trip() {
     rig.bus.run_for(sim::SimTime(1us) * up_to(generator, 2'000) + 1ms);
     const Frame frame = random_frame();
-    Frame back = frame;
-    back.id ^= 1;
-    const sim::SimTime bits = bits_of(frame, back);
+    const sim::SimTime bits = bits_of(frame, answer_to(frame));
     rig.records.clear();
     const sim::SimTime start = rig.bus.now();
     rig.send(frame);

@@ -104,9 +104,7 @@ class BridgeLoad : public testing::TestWithParam<Load> {
 
   void SetUp() override {
     rig.hello();
-    ASSERT_EQ(rig.request(serial::Down::speed, bytes_of(1'000'000)), Status::ok);
-    rig.bus.run_for(5ms);
-    rig.ask_status();
+    ASSERT_NO_FATAL_FAILURE(rig.set_line_rate(1'000'000));
     rig.records.clear();
     rig.on_bus.clear();
   }

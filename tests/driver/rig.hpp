@@ -79,6 +79,10 @@ struct TestTraits : Mcp2515Traits {
   std::vector<Outcome> outcomes;
 };
 
+struct BackToBack : TestTraits {
+  static constexpr bool back_to_back = true;
+};
+
 template <std::uint32_t BitrateBps = 500'000>
 inline Mcp2515Config plain_config(mcp2515::Mode mode = mcp2515::Mode::normal,
                                   bool one_shot = false) {

@@ -117,10 +117,6 @@ TEST(SpiBudget, SendingFramesThatFollowOneAnother) {
   EXPECT_EQ(rig.spent(), Cost(2, 1)) << "full until the second has gone, too";
 }
 
-struct BackToBack : TestTraits {
-  static constexpr bool back_to_back = true;
-};
-
 TEST(SpiBudget, BackToBackTwoBytesMoreForTheBuffersPriority) {
   Rig<false, 0, 0, BackToBack> rig;
   rig.begin();

@@ -25,10 +25,6 @@ namespace {
 constexpr std::uint8_t queue = 32;
 using SendingRig = Rig<false, 0, queue>;
 
-struct BackToBack : TestTraits {
-  static constexpr bool back_to_back = true;
-};
-
 /// The driver with two places for normal frames, and with six.
 template <typename Traits>
 class TransmitOrderOf : public testing::Test {

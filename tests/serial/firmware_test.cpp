@@ -143,14 +143,18 @@ class Flood {
   std::uint32_t next_ = 0;
 };
 
-/// In order, none twice, and what is missing is counted; of what the controller itself lost, only
-/// how many times.
-void expect_all_told(BoardLine& line, std::uint32_t sent) {
+void expect_arrived_in_order(const BoardLine& line) {
   std::uint32_t next = 0;
   for (const auto& one : line.arrived) {
     ASSERT_GE(number_of_id(one.frame.id), next) << "out of order, or twice";
     next = number_of_id(one.frame.id) + 1;
   }
+}
+
+/// In order, none twice, and what is missing is counted; of what the controller itself lost, only
+/// how many times.
+void expect_all_told(BoardLine& line, std::uint32_t sent) {
+  ASSERT_NO_FATAL_FAILURE(expect_arrived_in_order(line));
   const std::uint32_t overflows = line.counters().overflows;
   const std::uint64_t told = line.arrived.size() + line.session.lost();
   EXPECT_LE(told, sent);
@@ -273,6 +277,11 @@ TEST(SerialFirmware, WhatDoesNotFitIsCountedExactly) {
   EXPECT_EQ(line.session.counters().sessions, 1U);
 }
 
+/// As a fault: no byte arrives.
+std::optional<std::uint8_t> nothing(std::uint8_t /*byte*/) {
+  return std::nullopt;
+}
+
 /// Frames both ways, as many as 115,200 bit/s carries, while something happens to the line.
 class Traffic {
  public:
@@ -292,11 +301,7 @@ class Traffic {
   }
   /// Each at most once, in order, and told truly.
   void expect_truth() const {
-    std::uint32_t next = 0;
-    for (const auto& one : line_.arrived) {
-      ASSERT_GE(number_of_id(one.frame.id), next) << "out of order, or twice";
-      next = number_of_id(one.frame.id) + 1;
-    }
+    ASSERT_NO_FATAL_FAILURE(expect_arrived_in_order(line_));
     expect_on_bus_in_order(line_);
     const serial::DownFrames::Counters& down = line_.session.down();
     EXPECT_EQ(down.sent + down.unknown, source_.offered);
@@ -335,8 +340,7 @@ TEST(SerialFirmware, AnUnpluggedLineIsBackWithinASecond) {
   line.run_for(300ms);
   // For less than the bridge's patience with a silent PC, and for more.
   for (const Time away : {Time(50ms), Time(3s)}) {
-    line.up_fault =
-        line.down_fault = [](std::uint8_t) -> std::optional<std::uint8_t> { return std::nullopt; };
+    line.up_fault = line.down_fault = nothing;
     line.session.end();
     line.run_for(away);
     line.up_fault = line.down_fault = nullptr;
@@ -354,7 +358,6 @@ TEST(SerialFirmware, CreditThatDoesNotComeIsMadeUpForWithinASecond) {
   line.open();
   Traffic traffic(line);
   line.run_for(300ms);
-  const auto nothing = [](std::uint8_t) -> std::optional<std::uint8_t> { return std::nullopt; };
   for (int i = 0; i < 6; ++i) {
     (i % 2 == 0 ? line.up_fault : line.down_fault) = nothing;
     line.run_for(150ms);  // the window is long full

@@ -31,6 +31,14 @@ inline bool is_pending(uint8_t pending, uint8_t buffer) {
   return (pending & QuickStatus::txreq(buffer)) != 0;
 }
 
+inline uint8_t unless_pending(uint8_t buffer, uint8_t pending) {
+  return is_pending(pending, buffer) ? no_buffer : buffer;
+}
+
+/// What TXBnCTRL holds where all have the same: any TXP will do, but not the 0 of a line that says
+/// nothing.
+constexpr uint8_t common_level = 2;
+
 template <TxPlaces Places>
 class TxOrder;
 
@@ -38,8 +46,7 @@ template <>
 class TxOrder<TxPlaces::one> {
  public:
   static uint8_t choose(bool, uint8_t pending) { return pending == 0 ? second_buffer : no_buffer; }
-  /// What TXBnCTRL holds: any TXP will do, but not the 0 of a line that says nothing.
-  static uint8_t level_of(uint8_t) { return 2; }
+  static uint8_t level_of(uint8_t) { return common_level; }
 };
 
 template <>
@@ -47,14 +54,14 @@ class TxOrder<TxPlaces::two> {
  public:
   static uint8_t choose(bool urgent, uint8_t pending) {
     if (urgent) {
-      return is_pending(pending, urgent_buffer) ? no_buffer : urgent_buffer;
+      return unless_pending(urgent_buffer, pending);
     }
     if (is_pending(pending, second_buffer)) {
       return no_buffer;
     }
     return is_pending(pending, first_buffer) ? second_buffer : first_buffer;
   }
-  static uint8_t level_of(uint8_t) { return 2; }
+  static uint8_t level_of(uint8_t) { return common_level; }
 };
 
 template <>
@@ -65,7 +72,7 @@ class TxOrder<TxPlaces::six> {
   /// The caller loads the buffer that this names.
   uint8_t choose(bool urgent, uint8_t pending) {
     if (urgent) {
-      return is_pending(pending, urgent_buffer) ? no_buffer : urgent_buffer;
+      return unless_pending(urgent_buffer, pending);
     }
     if (!is_pending(pending, first_buffer) && !is_pending(pending, second_buffer)) {
       place_ = 0;
