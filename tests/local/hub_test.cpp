@@ -4,11 +4,14 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <array>
+#include <atomic>
 #include <csignal>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <roio.hpp>
+#include <thread>
 
 #include "process.hpp"
 
@@ -131,6 +134,35 @@ TEST(LocalBus, AFileInTheSocketsPlaceIsReplaced) {
   std::filesystem::permissions(folder.path(), std::filesystem::perms::owner_all);
   std::ofstream(folder.path() / "odd.sock") << "no socket";
   EXPECT_EQ(refusal("local:odd"), "(opened)");
+}
+
+// The listener is asked by the hub before the sender is, so there is a moment in which the hub has
+// missed the filters and sees the frame; the third keeps the hub busy, so that it is met.
+TEST(LocalBus, FiltersSetBeforeAnotherSendsHoldForItsFrame) {
+  const std::string url = "local:" + unique_name();
+  const auto holder = open(url);
+  const auto listener = open(url);
+  const auto sender = open(url, {.send_only = true});
+  std::atomic<bool> over{false};
+  std::thread busy([&] {
+    const auto bus = open(url, {.send_only = true});
+    while (!over) {
+      static_cast<void>(bus->send(Frame{1, FrameKind::standard, 0, {}}, 1s));
+    }
+  });
+  const Frame frame{2, FrameKind::standard, 0, {}};
+  constexpr int rounds = 5000;
+  int missed = 0;
+  for (int i = 0; i < rounds && missed == 0; ++i) {
+    listener->set_filters({});
+    listener->set_filters(std::array{SocketCanFilter{2, 0x7FF}});
+    ASSERT_EQ(sender->send(frame, 30s), Result::ok);
+    Received received{};
+    missed += listener->receive(received, 5s) == Result::ok ? 0 : 1;
+  }
+  over = true;
+  busy.join();
+  EXPECT_EQ(missed, 0);
 }
 
 // The hub's stamps, not this process's clock: a busy machine cannot disturb them.

@@ -134,7 +134,7 @@ void Hub::read_clients() {
       stream.close();
     }
   }
-  medium_.offered(now_);
+  medium_.asked_all(now_);
 }
 
 void Hub::handle(HubClient& client, const Record& record) {

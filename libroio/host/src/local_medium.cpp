@@ -6,9 +6,15 @@
 
 namespace roio::local {
 
+void Station::ready() {
+  for (Lane& lane : lanes_) {
+    lane.contending = std::exchange(lane.next, lane.waiting.size());
+  }
+}
+
 std::optional<std::size_t> Station::lane() const {
   for (std::size_t lane = 0; lane < lane_count; ++lane) {
-    if (!lanes_.at(lane).empty()) {
+    if (lanes_.at(lane).contending > 0) {
       return lane;
     }
   }
@@ -16,9 +22,11 @@ std::optional<std::size_t> Station::lane() const {
 }
 
 Station::Offer Station::take() {
-  auto& lane = lanes_.at(*this->lane());
-  const Offer offer = lane.front();
-  lane.pop_front();
+  Lane& lane = lanes_.at(*this->lane());
+  const Offer offer = lane.waiting.front();
+  lane.waiting.pop_front();
+  --lane.contending;
+  --lane.next;
   return offer;
 }
 
@@ -33,7 +41,10 @@ void Medium::drop_detached() {
   });
 }
 
-void Medium::offered(TimePoint now) {
+void Medium::asked_all(TimePoint now) {
+  for (const auto& station : stations_) {
+    station->ready();
+  }
   if (!contended_) {
     idle_since_ = std::max(idle_since_, now);
     contended_ = true;
@@ -44,7 +55,7 @@ std::optional<Medium::Transmission> Medium::next(TimePoint now) {
   if (!on_wire_) {
     on_wire_ = arbitrate();
     if (!on_wire_) {
-      contended_ = false;
+      contended_ = !all_empty();
       return std::nullopt;
     }
   }
@@ -55,6 +66,11 @@ std::optional<Medium::Transmission> Medium::next(TimePoint now) {
   }
   idle_since_ = on_wire_->end;
   return std::exchange(on_wire_, std::nullopt);
+}
+
+bool Medium::all_empty() const {
+  return std::all_of(stations_.begin(), stations_.end(),
+                     [](const auto& station) { return station->empty(); });
 }
 
 std::optional<Medium::TimePoint> Medium::next_end() const {
@@ -68,7 +84,7 @@ std::optional<Medium::Transmission> Medium::arbitrate() {
   std::uint32_t lowest = 0;
   for (std::size_t i = 0; i < stations_.size(); ++i) {
     const std::size_t index = (first_ + i) % stations_.size();
-    if (stations_[index]->empty()) {
+    if (!stations_[index]->lane()) {
       continue;
     }
     const std::uint32_t key = arbitration_key(stations_[index]->front().frame);

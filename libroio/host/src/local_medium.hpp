@@ -14,7 +14,7 @@
 namespace roio::local {
 
 /// One client's frames that wait for the bus: what a controller's transmit buffers are on a real
-/// one.
+/// one. A frame is given first, and contends for the bus once ready() has been called twice.
 class Station {
  public:
   explicit Station(std::uint64_t sender) : sender_(sender) {}
@@ -24,22 +24,33 @@ class Station {
     std::uint64_t sequence;
   };
 
-  void add(std::size_t lane, const Offer& offer) { lanes_.at(lane).push_back(offer); }
+  void add(std::size_t lane, const Offer& offer) { lanes_.at(lane).waiting.push_back(offer); }
+  /// Lets those frames contend that had been added when this was last called.
+  void ready();
   [[nodiscard]] std::uint64_t sender() const { return sender_; }
   [[nodiscard]] bool empty() const {
-    return lanes_[urgent_lane].empty() && lanes_[normal_lane].empty();
+    return waiting(urgent_lane) == 0 && waiting(normal_lane) == 0;
   }
-  [[nodiscard]] std::size_t waiting(std::size_t lane) const { return lanes_.at(lane).size(); }
+  [[nodiscard]] std::size_t waiting(std::size_t lane) const {
+    return lanes_.at(lane).waiting.size();
+  }
 
-  /// The lane that this station contends with: urgent frames pass normal ones. None when empty.
+  /// The lane that this station contends with: urgent frames pass normal ones. None when no frame
+  /// contends.
   [[nodiscard]] std::optional<std::size_t> lane() const;
-  /// The first frame of that lane, without or with taking it. Not when empty.
-  [[nodiscard]] const Offer& front() const { return lanes_.at(*lane()).front(); }
+  /// The first frame of that lane, without or with taking it. Not when there is none.
+  [[nodiscard]] const Offer& front() const { return lanes_.at(*lane()).waiting.front(); }
   Offer take();
 
  private:
+  struct Lane {
+    std::deque<Offer> waiting;
+    std::size_t contending = 0;  // of waiting, from the front
+    std::size_t next = 0;        // contending, when ready() is called next
+  };
+
   std::uint64_t sender_;
-  std::array<std::deque<Offer>, lane_count> lanes_;
+  std::array<Lane, lane_count> lanes_;
 };
 
 /// The wire between the stations: lowest arbitration key first and, when it has a bit rate, one
@@ -64,20 +75,26 @@ class Medium {
   /// The station stays until its frames have been sent, as a controller's would.
   void detach(const std::shared_ptr<Station>& station);
 
-  /// Tells that stations may have been given frames, at `now`.
-  void offered(TimePoint now);
+  /// Tells that every client has been asked once more, at `now`, for what it has sent.
+  ///
+  /// Frames that stations had been given before that round contend from now on; those of the round
+  /// itself do not yet. For clients are asked one after the other: what the first sent before the
+  /// last did (its filters: it means to hear the last one's frame) may have come just after it was
+  /// asked, and is known a round later.
+  void asked_all(TimePoint now);
 
   /// The next frame that has passed by `now`, if there is one. Call until there is none.
   std::optional<Transmission> next(TimePoint now);
 
-  /// Whether frames may wait: offered, and next() has not said since that there are none.
+  /// Whether frames may wait: asked_all(), and next() has not found since that there are none.
   [[nodiscard]] bool contended() const { return contended_; }
 
-  /// When next() will have something by itself; none: not before offered().
+  /// When next() will have something by itself; none: not before asked_all().
   [[nodiscard]] std::optional<TimePoint> next_end() const;
 
  private:
   std::optional<Transmission> arbitrate();
+  [[nodiscard]] bool all_empty() const;
   void drop_detached();
 
   std::optional<std::uint32_t> bitrate_bps_;
