@@ -9,6 +9,7 @@
 #include <set>
 
 #include "rig.hpp"
+#include "sanitizers.hpp"
 #include "seed.hpp"
 
 namespace roio::test {
@@ -17,11 +18,7 @@ namespace {
 /// Simulated seconds; scripts/soak asks for an hour.
 std::int64_t soak_seconds() {
   const char* const given = std::getenv("ROIO_SOAK_SECONDS");
-#if defined(__SANITIZE_ADDRESS__)
-  constexpr std::int64_t usual = 10;
-#else
-  constexpr std::int64_t usual = 120;
-#endif
+  constexpr std::int64_t usual = is_instrumented ? 10 : 120;
   return given != nullptr ? std::strtoll(given, nullptr, 10) : usual;
 }
 

@@ -2,16 +2,14 @@
 #include <random>
 
 #include "rig.hpp"
+#include "sanitizers.hpp"
 #include "seed.hpp"
 
 namespace roio::test {
 namespace {
 
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-constexpr std::uint32_t frames_each = 20'000;  // instrumented code is ten times slower
-#else
-constexpr std::uint32_t frames_each = 250'000;  // a million for the four drivers below
-#endif
+// A million for the four drivers below.
+constexpr std::uint32_t frames_each = is_instrumented ? 20'000 : 250'000;
 
 /// Keeps the bus at 100 %: frames of 0 to 8 bytes, to the node and to everybody in its subnet,
 /// mixed.

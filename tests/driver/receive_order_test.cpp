@@ -9,6 +9,7 @@
 //   a look that was nonsense is repeated                     IsFoundAgainAfterALookThatWentWrong
 //   a line that is low is no frame yet                       AnInterruptLineThatIsStuckLowIsNoFrame
 #include "rig.hpp"
+#include "sanitizers.hpp"
 
 namespace roio::test {
 namespace {
@@ -255,11 +256,7 @@ constexpr std::size_t apart = 5;
 
 /// The release build takes every choice of steps; a sanitizer needs the paths, not all the moments,
 /// and takes one in eleven.
-#ifdef __SANITIZE_ADDRESS__
-constexpr std::size_t stride = 11;
-#else
-constexpr std::size_t stride = 1;
-#endif
+constexpr std::size_t stride = is_instrumented ? 11 : 1;
 
 /// Three frames at every choice of steps.
 template <bool WithLine, std::uint8_t RxQueue>

@@ -12,6 +12,8 @@
 namespace roio::load {
 namespace {
 
+using namespace std::chrono_literals;
+
 void check_sums(const BitErrorReport& report) {
   EXPECT_TRUE(report.alive);
   // On the way there: all that the PC sent was accepted, or is one of these losses.
@@ -46,7 +48,7 @@ void print(const BitErrorReport& report) {
 }
 
 TEST(EchoUnderBitErrors, OnePercent) {
-  const BitErrorReport report = echo_under_bit_errors(0.01, 1, soak_span(60));
+  const BitErrorReport report = echo_under_bit_errors(0.01, 1, soak_span(60s));
   print(report);
   check_sums(report);
   EXPECT_GT(report.chip_bus_offs, 10U);
@@ -54,14 +56,14 @@ TEST(EchoUnderBitErrors, OnePercent) {
 }
 
 TEST(EchoUnderBitErrors, OnePerMille) {
-  const BitErrorReport report = echo_under_bit_errors(0.001, 2, soak_span(10));
+  const BitErrorReport report = echo_under_bit_errors(0.001, 2, soak_span(10s));
   print(report);
   check_sums(report);
   EXPECT_GT(report.sent, 1000U);
 }
 
 TEST(EchoUnderBitErrors, NoneForComparison) {
-  const BitErrorReport report = echo_under_bit_errors(0, 3, usual_span(1));
+  const BitErrorReport report = echo_under_bit_errors(0, 3, 1s);
   check_sums(report);
   EXPECT_EQ(report.missing + report.repeated + report.back_repeated, 0U);
   EXPECT_EQ(report.back, report.sent);

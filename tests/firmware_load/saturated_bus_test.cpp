@@ -5,10 +5,11 @@
 #include <ostream>
 
 #include "saturation.hpp"
-#include "spans.hpp"
 
 namespace roio::load {
 namespace {
+
+using namespace std::chrono_literals;
 
 struct Row {
   SaturationCase load;
@@ -22,9 +23,9 @@ std::ostream& operator<<(std::ostream& out, const Row& row) {
 class SaturatedBus : public testing::TestWithParam<Row> {};
 
 TEST_P(SaturatedBus, LosesNothingAndKeepsTheOrder) {
-  const SaturationReport report = saturate(GetParam().load, usual_span(3));
+  const SaturationReport report = saturate(GetParam().load, 3s);
   EXPECT_GT(report.bus_load, 0.99);
-  EXPECT_GT(report.sent, 1000U / slowdown);
+  EXPECT_GT(report.sent, 1000U);
   EXPECT_EQ(report.overflowed, 0U);
   EXPECT_EQ(report.accepted, report.sent);
   EXPECT_EQ(report.received, report.sent);

@@ -28,7 +28,8 @@ class OneClient : public ::testing::Test {
 
   void deliver(std::uint64_t count, HubClient::TimePoint now = start) {
     for (std::uint64_t i = 0; i < count; ++i) {
-      client_->deliver(Deliver{0, 2, number_ + 1, 0, to_wire(some_frame)}, ++number_, now);
+      ++number_;
+      client_->deliver(Deliver{0, 2, number_, 0, to_wire(some_frame)}, number_, now);
     }
   }
 

@@ -17,6 +17,7 @@
 #include <vector>
 
 #include "line.hpp"
+#include "sanitizers.hpp"
 #include "seed.hpp"
 #include "sender.hpp"
 
@@ -30,11 +31,7 @@ using Event = RecordReader::Event;
 /// scripts/soak asks for more.
 std::uint64_t record_count() {
   const char* const given = std::getenv("ROIO_SOAK_RECORDS");
-#if defined(__SANITIZE_ADDRESS__)
-  constexpr std::uint64_t usual = 1'000'000;
-#else
-  constexpr std::uint64_t usual = 10'000'000;
-#endif
+  constexpr std::uint64_t usual = is_instrumented ? 1'000'000 : 10'000'000;
   return given != nullptr ? std::strtoull(given, nullptr, 10) : usual;
 }
 
