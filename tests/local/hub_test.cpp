@@ -165,6 +165,28 @@ TEST(LocalBus, FiltersSetBeforeAnotherSendsHoldForItsFrame) {
   EXPECT_EQ(missed, 0);
 }
 
+// A program that is told to end hands on what it had been sent before.
+TEST(LocalBus, CancelledReceiveStillGivesWhatItWasSent) {
+  const std::string url = "local:" + unique_name();
+  const auto receiver = open(url);
+  const std::vector<Frame> frames(3, Frame{2, FrameKind::standard, 0, {}});
+  for (int round = 0; round < 300; ++round) {
+    const auto sender = open(url, {.send_only = true});
+    ASSERT_EQ(sender->send(frames, 30s).result, Result::ok);
+    sender->close();  // the frames are with their reader
+    receiver->cancel();
+    std::vector<Received> received(frames.size());
+    std::size_t count = 0;
+    Transfer transfer{Result::ok, 0};
+    while (count < frames.size() && transfer.result == Result::ok) {
+      transfer = receiver->receive(std::span(received).subspan(count), forever);
+      count += transfer.count;
+    }
+    ASSERT_EQ(count, frames.size()) << "in round " << round;
+    receiver->resume();
+  }
+}
+
 // The hub's stamps, not this process's clock: a busy machine cannot disturb them.
 TEST(LocalBus, SaturatedBusRunsAtExactlyItsBitRate) {
   const std::string url = "local:" + unique_name() + "?bitrate=125000";

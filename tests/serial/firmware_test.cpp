@@ -461,6 +461,18 @@ TEST(SerialFirmware, WithoutAControllerFramesWait) {
   EXPECT_EQ(line.on_bus.size(), 20U);
 }
 
+TEST(SerialFirmware, ACrystalThatTurnsUpLateIsKnown) {
+  BoardLine line;
+  line.board.set_chip_fault(sim::SpiWire::Fault::stuck_high);
+  line.open();
+  EXPECT_EQ(line.session.info().state, BridgeState::no_controller);
+  EXPECT_EQ(line.session.info().osc_khz, 0);
+  line.board.set_chip_fault(sim::SpiWire::Fault::none);
+  EXPECT_TRUE(line.run_until([&] { return line.session.info().osc_khz == 16'000; }, 1s));
+  EXPECT_TRUE(line.session.info().interrupt_wired);
+  EXPECT_EQ(line.session.counters().sessions, 1U);
+}
+
 /// Its INT line stays low meanwhile, for it still holds frames.
 TEST(SerialFirmware, AControllerLostOnAFullBusIsTakenUpAgain) {
   for (const auto fault : {sim::SpiWire::Fault::stuck_high, sim::SpiWire::Fault::stuck_low}) {

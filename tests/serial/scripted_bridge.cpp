@@ -93,7 +93,14 @@ void ScriptedBridge::hello(const std::uint8_t* body, std::uint8_t length) {
   append32(payload, number);
   append32(payload, previous_);
   append32(payload, previous_due_);
-  payload = payload + Bytes{0, 1, 0, 1, flags, window, 0x3E, 0x80};
+  payload = payload + Bytes{0,
+                            1,
+                            0,
+                            1,
+                            flags,
+                            window,
+                            static_cast<std::uint8_t>(osc_khz >> 8),
+                            static_cast<std::uint8_t>(osc_khz)};
   append32(payload, bitrate_bps);
   send(Up::welcome, payload + Bytes{mode, address[0], address[1], rates});
 }

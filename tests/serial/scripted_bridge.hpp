@@ -42,6 +42,7 @@ class ScriptedBridge {
   std::uint8_t flags = serial::rate_matters | serial::interrupt_is_wired;
   std::uint8_t rates = 0x1F;
   std::uint8_t window = serial::window;
+  std::uint16_t osc_khz = 16'000;
   std::uint32_t bitrate_bps = 500'000;
   std::uint8_t mode = 0;
   std::array<std::uint8_t, 2> address{0, 254};

@@ -179,6 +179,25 @@ TEST(SerialSession, TakesABridgeWithoutAController) {
   EXPECT_EQ(line.session.info().state, BridgeState::no_controller);
 }
 
+TEST(SerialSession, LearnsTheCrystalOfAControllerThatTurnsUpLater) {
+  Line line;
+  line.bridge.state = 4;
+  line.bridge.osc_khz = 0;
+  line.bridge.flags = serial::rate_matters;
+  line.open();
+  line.run_for(300ms);
+  EXPECT_EQ(line.bridge.hellos, 1);
+  line.bridge.state = 0;
+  line.bridge.osc_khz = 8'000;
+  line.bridge.flags |= serial::interrupt_is_wired;
+  line.bridge.may_send = losing(serial::Up::welcome);
+  ASSERT_TRUE(line.run_until([&] { return line.session.info().osc_khz == 8'000; }, 400ms));
+  EXPECT_TRUE(line.session.info().interrupt_wired);
+  line.run_for(1s);
+  EXPECT_EQ(line.bridge.hellos, 3) << "once more than was lost";
+  EXPECT_EQ(line.session.counters().sessions, 1U);
+}
+
 TEST(SerialSession, PollsTenTimesASecond) {
   Line line;
   line.open();
@@ -255,6 +274,23 @@ TEST(SerialRate, IsLowerWhenTheTrialFails) {
   line.open();
   EXPECT_EQ(line.session.line_rate_bps(), 250'000U);
   EXPECT_EQ(line.session.counters().failed_trials, 2U);
+}
+
+TEST(SerialRate, GarbageThatTheChangeOfRateMakesIsNoDamagedRecord) {
+  Line line;
+  bool put = false;
+  line.at_each_step = [&] {
+    if (!put && line.session.phase() == Phase::trying) {
+      put = true;
+      for (const std::uint8_t byte : {0x55, 0xFF, 0x00}) {
+        line.bridge.out.push_front({byte, 1'000'000});
+      }
+    }
+  };
+  line.open();
+  EXPECT_TRUE(put);
+  EXPECT_EQ(line.session.line_rate_bps(), 1'000'000U);
+  EXPECT_EQ(line.session.counters().damaged, 0U);
 }
 
 TEST(SerialRate, IsLowerWhenNothingComesBack) {

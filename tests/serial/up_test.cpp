@@ -50,6 +50,39 @@ TEST(SerialUp, AGapIsToldWithTheNextFrame) {
   EXPECT_EQ(line.session.lost(), 2U);
 }
 
+TEST(SerialUp, ARecordThatTheLineRepeatsIsDeliveredOnce) {
+  Line line;
+  line.open();
+  for (std::uint32_t i = 0; i < 3; ++i) {
+    line.bridge.hear(numbered(i), line.now);
+  }
+  const auto copy = line.bridge.out;  // all three, and then all three again
+  line.bridge.out.insert(line.bridge.out.end(), copy.begin(), copy.end());
+  line.run_for(2ms);
+  line.bridge.hear(numbered(3), line.now);
+  line.run_for(200ms);
+  ASSERT_EQ(line.arrived.size(), 4U);
+  for (std::uint32_t i = 0; i < 4; ++i) {
+    EXPECT_EQ(number_of(line.arrived[i].frame), i);
+    EXPECT_EQ(line.arrived[i].lost_before, 0U);
+  }
+  EXPECT_EQ(line.session.counters().damaged, 3U);
+  EXPECT_EQ(line.session.lost(), 0U);
+}
+
+// A bus that always says the same: the sequence comes again, the time does not.
+TEST(SerialUp, TheSameFrame256LaterIsAnotherOne) {
+  Line line;
+  line.open();
+  for (int i = 0; i < 600; ++i) {
+    line.bridge.hear(numbered(7), line.now);
+    line.run_for(300us);
+  }
+  line.run_for(10ms);
+  EXPECT_EQ(line.arrived.size(), 600U);
+  EXPECT_EQ(line.session.lost(), 0U);
+}
+
 struct LossCase {
   const char* why;
   std::uint32_t lost;

@@ -170,6 +170,10 @@ Transfer LocalBus::receive(std::span<Received> frames, Timeout timeout) {
 }
 
 std::size_t LocalBus::take(std::span<Received> frames) {
+  if (waits_.is_cancelled() && queue_.size() == 0 && connection_) {
+    // What has come, and the reading thread has not got round to; an end it will see, too.
+    static_cast<void>(read());
+  }
   const std::size_t count = queue_.take(frames);
   const std::size_t before = std::min(count, queued_before_);
   queued_before_ -= before;

@@ -23,6 +23,7 @@ Transfer receive_queued(const Waits& waits, const EventFlag& readable, std::span
                         Timeout timeout, const Take& take) {
   const Deadline deadline(timeout);
   for (;;) {
+    const bool cancelled = waits.is_cancelled();  // before it looks: what is there then is given
     const std::optional<std::size_t> count = take(frames);
     if (!count) {
       return {Result::closed, 0};
@@ -30,7 +31,6 @@ Transfer receive_queued(const Waits& waits, const EventFlag& readable, std::span
     if (*count > 0) {
       return {Result::ok, *count};
     }
-    const bool cancelled = waits.is_cancelled();
     if (cancelled || frames.empty() || deadline.passed()) {
       return {cancelled ? Result::cancelled : Result::timeout, 0};
     }

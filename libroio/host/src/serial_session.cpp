@@ -1,7 +1,6 @@
 #include "serial_session.hpp"
 
 #include <algorithm>
-#include <bit>
 #include <utility>
 
 namespace roio {
@@ -30,10 +29,7 @@ constexpr milliseconds bye_interval{50};
 constexpr milliseconds bus_interval{300};  // the controller is started anew, which takes its time
 constexpr milliseconds request_interval{100};
 constexpr unsigned max_tries = 4;
-constexpr unsigned max_unanswered_speeds = 2;
 
-constexpr int tolerable_in_trial = 1;    // damaged records: the change of rate may make one
-constexpr int tolerable_of_history = 7;  // of 64
 constexpr unsigned polls_per_counters = 10;
 // As much may wait for the port; then it does not take any, and nothing is added.
 constexpr std::size_t clogged = 1024;
@@ -83,13 +79,14 @@ bool is_kept(const SerialSession::Reply& reply) {
 }  // namespace
 
 SerialSession::SerialSession(SerialSettings settings, Nonces nonces)
-    : settings_(std::move(settings)), nonces_(std::move(nonces)) {}
+    : settings_(std::move(settings)),
+      nonces_(std::move(nonces)),
+      line_rate_(settings_.line_rate_bps) {}
 
 // --- the course of a session ---------------------------------------------------------------------
 
 void SerialSession::begin(Time now) {
-  rate_limit_ = rate_count - 1U;
-  unanswered_speeds_ = 0;
+  line_rate_.begin();
   other_version_.reset();
   refusal_.reset();
   call(now);
@@ -98,7 +95,7 @@ void SerialSession::begin(Time now) {
 void SerialSession::end() {
   phase_ = Phase::closed;
   output_.clear();
-  line_rate_bps_ = base_rate_bps;
+  line_rate_.start_over();
   down_.begin();
   answer_all(Reply::Kind::no_session);
 }
@@ -114,8 +111,7 @@ void SerialSession::call(Time now) {
   down_.begin();
   reader_ = RecordReader();
   output_.clear();
-  rate_ = 0;
-  line_rate_bps_ = base_rate_bps;
+  line_rate_.start_over();
   for (unsigned i = 0; i < nonce_tries; ++i) {
     session_ = nonces_();
     const Record hello = hello_of(session_);
@@ -134,6 +130,10 @@ void SerialSession::say_hello(Time now) {
     return;
   }
   output_.push_back(delimiter);  // whatever the bridge has heard so far is over
+  append_hello();
+}
+
+void SerialSession::append_hello() {
   const Record hello = hello_of(session_);
   output_.insert(output_.end(), hello.span().begin(), hello.span().end());
 }
@@ -152,9 +152,7 @@ void SerialSession::go_on(Time now) {
     switch (set_up_step_) {
       case SetUp::speed:
         set_up_step_ = SetUp::bus;
-        if (best_rate() != rate_) {
-          ask_speed(best_rate(), now);
-        }
+        ask_speed(now);
         break;
       case SetUp::bus:
         set_up_step_ = SetUp::address;
@@ -256,53 +254,37 @@ void SerialSession::consume_output(std::size_t count) {
   output_.erase(output_.begin(), output_.begin() + static_cast<std::ptrdiff_t>(count));
 }
 
+bool SerialSession::controller_works() const {
+  return info_.state != BridgeState::no_controller && info_.state != BridgeState::stuck;
+}
+
 bool SerialSession::line_is_clogged() const {
   return output_.size() >= clogged;
 }
 
 // --- the line rate -------------------------------------------------------------------------------
 
-unsigned SerialSession::best_rate() const {
-  if (!info_.line_rate_matters) {
-    return 0;
+/// If there is a better one than now. Nothing else is said until the reply.
+void SerialSession::ask_speed(Time now) {
+  const std::optional<std::uint32_t> rate_bps = line_rate_.ask();
+  if (!rate_bps) {
+    return;
   }
-  unsigned best = 0;
-  for (unsigned i = 1; i <= rate_limit_; ++i) {
-    const bool offered = ((rates_ >> i) & 1U) != 0;
-    if (offered && rate_bps(static_cast<std::uint8_t>(i)) <= settings_.line_rate_bps) {
-      best = i;
-    }
-  }
-  return best;
-}
-
-/// Nothing else is said until the reply.
-void SerialSession::ask_speed(unsigned index, Time now) {
   phase_ = Phase::speeding;
-  new_rate_ = index;
   speed_until_ = now + speed_timeout;
-  write_numbered(Down::speed, ++last_request_,
-                 speed_payload(rate_bps(static_cast<std::uint8_t>(index))));
+  write_numbered(Down::speed, ++last_request_, speed_payload(*rate_bps));
 }
 
 /// The bridge may have changed its rate or not: only HELLO at the base rate is sure.
 void SerialSession::miss_speed(Time now) {
-  ++unanswered_speeds_;
-  if (unanswered_speeds_ >= max_unanswered_speeds) {
-    unanswered_speeds_ = 0;
-    rate_limit_ = new_rate_ - (new_rate_ > 0 ? 1U : 0U);
-  }
+  line_rate_.unanswered();
   lose(now);
 }
 
 void SerialSession::begin_trial(Time now) {
-  unanswered_speeds_ = 0;
   phase_ = Phase::trying;
-  rate_ = new_rate_;
-  line_rate_bps_ = rate_bps(static_cast<std::uint8_t>(rate_));
-  history_ = 0;
+  line_rate_.try_out();
   speed_until_ = now + trial_time;
-  echoes_missing_ = (1U << echo_count) - 1U;
   output_.assign(1, delimiter);
   send_echoes(now);
 }
@@ -310,27 +292,21 @@ void SerialSession::begin_trial(Time now) {
 void SerialSession::send_echoes(Time now) {
   echo_at_ = now + echo_interval;
   for (unsigned i = 0; i < echo_count; ++i) {
-    if ((echoes_missing_ >> i & 1U) != 0) {
+    if (line_rate_.is_missing(i)) {
       write_control(Down::echo, echo_payload(i));
     }
   }
 }
 
 bool SerialSession::take_echoed(std::span<const std::uint8_t> payload, Time now) {
-  const unsigned number = payload.empty() ? echo_count : payload[0];
-  if (number >= echo_count || !std::ranges::equal(payload, echo_payload(number))) {
+  const LineRate::Trial trial = line_rate_.take(payload);
+  if (trial == LineRate::Trial::nonsense) {
     return false;
   }
-  if (phase_ != Phase::trying) {
-    return true;  // one that was sent twice
-  }
-  echoes_missing_ &= ~(1U << number);
-  if (echoes_missing_ != 0) {
-    return true;
-  }
-  if (std::popcount(history_) > tolerable_in_trial) {
+  // Else one that was sent twice.
+  if (phase_ == Phase::trying && trial == LineRate::Trial::failed) {
     fail_trial(now);
-  } else {
+  } else if (phase_ == Phase::trying && trial == LineRate::Trial::passed) {
     go_on(now);
   }
   return true;
@@ -338,18 +314,15 @@ bool SerialSession::take_echoed(std::span<const std::uint8_t> payload, Time now)
 
 void SerialSession::fail_trial(Time now) {
   ++counters_.failed_trials;
-  rate_limit_ = rate_ - (rate_ > 0 ? 1U : 0U);
+  line_rate_.give_up();
   lose(now);
 }
 
 void SerialSession::step_down_if_needed(Time now) {
-  if (phase_ != Phase::ready || asked_ || rate_ == 0 ||
-      std::popcount(history_) <= tolerable_of_history) {
+  if (phase_ != Phase::ready || asked_ || !line_rate_.is_to_step_down()) {
     return;
   }
   ++counters_.step_downs;
-  history_ = 0;
-  rate_limit_ = rate_ - 1U;
   set_up_step_ = SetUp::speed;
   go_on(now);
 }
@@ -506,7 +479,7 @@ void SerialSession::take_speed_reply(std::uint8_t number, const Reply& reply, Ti
     begin_trial(now);
     return;
   }
-  rate_limit_ = new_rate_ - (new_rate_ > 0 ? 1U : 0U);
+  line_rate_.refused();
   set_up_step_ = SetUp::speed;
   go_on(now);
 }
@@ -551,7 +524,7 @@ bool SerialSession::take_results(std::span<const std::uint8_t> payload, Time now
     progress_at_ = now;
   }
   if ((payload[1] & again) != 0 && down_.awaits_taking()) {
-    history_ |= 1U;  // a record has come to harm on its way down
+    line_rate_.note_damaged_down();
     down_.go_back();
     progress_at_ = now;
   }
@@ -563,8 +536,7 @@ void SerialSession::check_progress(Time now) {
     down_.go_back();
     progress_at_ = now;
   }
-  const bool works = info_.state != BridgeState::no_controller && info_.state != BridgeState::stuck;
-  if (down_.awaits_outcome() && works && now >= results_at_ + results_lost) {
+  if (down_.awaits_outcome() && controller_works() && now >= results_at_ + results_lost) {
     lose(now);
   }
 }
@@ -591,7 +563,7 @@ void SerialSession::receive(std::span<const std::uint8_t> bytes, Time now) {
 }
 
 void SerialSession::take_record(std::span<const std::uint8_t> body, Time now) {
-  history_ <<= 1U;
+  line_rate_.note_intact();
   heard_at_ = now;
   const bool makes_sense = is_control(body[0]) ? take_control(body, now) : take_frame(body, now);
   if (!makes_sense) {
@@ -604,8 +576,9 @@ void SerialSession::count_damaged(Time now) {
   if (!in_session()) {
     return;
   }
-  ++counters_.damaged;
-  history_ = (history_ << 1U) | 1U;
+  if (line_rate_.note_damaged()) {
+    ++counters_.damaged;
+  }
   step_down_if_needed(now);
 }
 
@@ -640,6 +613,9 @@ bool SerialSession::take_frame(std::span<const std::uint8_t> body, Time now) {
   if (!read_frame(body.data(), static_cast<std::uint8_t>(body.size()), frame_head_up, frame)) {
     return false;
   }
+  if (in_session() && repeated_.take(body)) {
+    return false;
+  }
   if (in_session()) {
     up_.take(body[sequence_at]);
     const std::uint64_t lost_before = up_.lost() - std::exchange(lost_told_, up_.lost());
@@ -657,11 +633,16 @@ bool SerialSession::take_welcome(std::span<const std::uint8_t> payload, Time now
     return true;
   }
   const std::optional<Welcome> welcome = read_welcome(payload);
-  // Not calling: HELLO was repeated, and this is the answer to that. Another number: an old answer.
-  if (welcome && phase_ == Phase::calling && welcome->session == session_) {
-    open_session(*welcome, now);
+  if (!welcome || welcome->session != session_) {
+    return welcome.has_value();  // the answer to an old HELLO
   }
-  return welcome.has_value();
+  if (phase_ == Phase::calling) {
+    open_session(*welcome, now);
+  } else {  // HELLO was repeated
+    info_.osc_khz = welcome->info.osc_khz;
+    info_.interrupt_wired = welcome->info.interrupt_wired;
+  }
+  return true;
 }
 
 void SerialSession::open_session(const Welcome& welcome, Time now) {
@@ -669,12 +650,12 @@ void SerialSession::open_session(const Welcome& welcome, Time now) {
     up_.settle(welcome.previous_due);
   }
   info_ = welcome.info;
-  rates_ = welcome.rates;
+  line_rate_.offer(welcome.rates, welcome.info.line_rate_matters);
   up_.begin();
+  repeated_.begin();
   clock_.begin();
   last_session_ = session_;
   ++counters_.sessions;
-  history_ = 0;
   counters_wanted_ = true;
   other_version_.reset();
   refusal_.reset();
@@ -693,6 +674,10 @@ bool SerialSession::take_status(std::span<const std::uint8_t> payload, Time now)
   info_.transmit_errors = status->transmit_errors;
   info_.receive_errors = status->receive_errors;
   counters_wanted_ = counters_wanted_ || before != info_.state;
+  // WELCOME came before there was a controller, and could not say what crystal it has.
+  if (info_.osc_khz == 0 && controller_works() && phase_ == Phase::ready) {
+    append_hello();
+  }
   return true;
 }
 
@@ -745,7 +730,7 @@ void SerialSession::poll(Time now) {
 
 BridgeInfo SerialSession::info() const {
   BridgeInfo info = info_;
-  info.line_rate_bps = line_rate_bps_;
+  info.line_rate_bps = line_rate_bps();
   if (!in_session()) {
     info.state = BridgeState::absent;
   }

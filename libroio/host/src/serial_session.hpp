@@ -29,6 +29,7 @@
 
 #include "serial_clock.hpp"
 #include "serial_down.hpp"
+#include "serial_line_rate.hpp"
 #include "serial_payloads.hpp"
 #include "serial_reports.hpp"
 #include "serial_up.hpp"
@@ -109,7 +110,7 @@ class SerialSession {
   /// Time::max(): nothing goes by time now.
   [[nodiscard]] Time deadline() const;
 
-  [[nodiscard]] std::uint32_t line_rate_bps() const { return line_rate_bps_; }
+  [[nodiscard]] std::uint32_t line_rate_bps() const { return line_rate_.bps(); }
   [[nodiscard]] std::span<const std::uint8_t> output() const { return output_; }
   /// So many bytes of it have been sent.
   void consume_output(std::size_t count);
@@ -192,12 +193,14 @@ class SerialSession {
   void write_numbered(serial::Down operation, std::uint8_t number,
                       std::span<const std::uint8_t> payload);
   void say_hello(Time now);
+  void append_hello();
   void poll(Time now);
   void send_frames(Time now);
   [[nodiscard]] bool line_is_clogged() const;
 
   // The course of a session.
   [[nodiscard]] bool in_session() const { return phase_ > Phase::calling; }
+  [[nodiscard]] bool controller_works() const;
   void call(Time now);
   void lose(Time now);
   void refuse(Status status, Time now);
@@ -208,8 +211,7 @@ class SerialSession {
   void check_progress(Time now);
 
   // The line rate.
-  [[nodiscard]] unsigned best_rate() const;
-  void ask_speed(unsigned index, Time now);
+  void ask_speed(Time now);
   void miss_speed(Time now);
   void begin_trial(Time now);
   void send_echoes(Time now);
@@ -232,12 +234,13 @@ class SerialSession {
   Phase phase_ = Phase::closed;
   std::uint32_t session_ = serial::no_session;
   std::uint32_t last_session_ = serial::no_session;  // whose frames up_ has counted
-  std::uint32_t line_rate_bps_ = serial::base_rate_bps;
+  serial::LineRate line_rate_;
   std::vector<std::uint8_t> output_;
   serial::RecordReader reader_;
 
   serial::DownFrames down_;
   serial::UpCount up_;
+  serial::RepeatedFrames repeated_;
   std::uint64_t lost_told_ = 0;
   serial::BridgeClock clock_;
   std::vector<Arrived> arrived_;
@@ -253,12 +256,6 @@ class SerialSession {
 
   // The session's course.
   SetUp set_up_step_ = SetUp::speed;
-  unsigned rate_ = 0;                              // index of the present rate
-  unsigned new_rate_ = 0;                          // asked for
-  unsigned rate_limit_ = serial::rate_count - 1U;  // what has shown to be too fast is above
-  unsigned unanswered_speeds_ = 0;
-  std::uint32_t echoes_missing_ = 0;  // one bit each
-  std::uint64_t history_ = 0;         // of the last 64 records: 1 is damaged
   std::uint8_t last_request_ = 0;
   std::optional<Asked> asked_;
   std::deque<Request> requests_;
@@ -266,7 +263,6 @@ class SerialSession {
 
   // What is known of the bridge.
   BridgeInfo info_;
-  std::uint8_t rates_ = 0;
   serial::CounterReports reports_;
   bool counters_wanted_ = false;
   std::optional<OtherVersion> other_version_;

@@ -1,7 +1,12 @@
 #ifndef ROIO_SERIAL_UP_HPP
 #define ROIO_SERIAL_UP_HPP
 
+#include <algorithm>
+#include <array>
+#include <cstddef>
 #include <cstdint>
+#include <span>
+#include <vector>
 
 namespace roio::serial {
 
@@ -43,6 +48,31 @@ class UpCount {
 
   std::uint64_t next_ = 0;  // of this session
   std::uint64_t lost_ = 0;  // of all sessions
+};
+
+/// Tells a record that the line repeats from a frame with the same sequence, 256 frames later: it
+/// is one of the last 16, byte for byte, the time included. For that to be another frame, 240 in a
+/// row would have to be lost, and it to be read from the controller a multiple of 262.144 ms later,
+/// to 4 us.
+class RepeatedFrames {
+ public:
+  /// Another session.
+  void begin() { last_ = {}; }
+  /// @param body of a frame from the bridge. @return whether it has come before.
+  bool take(std::span<const std::uint8_t> body) {
+    if (std::ranges::any_of(last_,
+                            [&](const auto& one) { return std::ranges::equal(one, body); })) {
+      return true;
+    }
+    last_[next_].assign(body.begin(), body.end());
+    next_ = (next_ + 1) % last_.size();
+    return false;
+  }
+
+ private:
+  static constexpr std::size_t remembered = 16;
+  std::array<std::vector<std::uint8_t>, remembered> last_;
+  std::size_t next_ = 0;
 };
 
 }  // namespace roio::serial
