@@ -282,7 +282,7 @@ TEST(SerialRate, GarbageThatTheChangeOfRateMakesIsNoDamagedRecord) {
   line.at_each_step = [&] {
     if (!put && line.session.phase() == Phase::trying) {
       put = true;
-      for (const std::uint8_t byte : {0x55, 0xFF, 0x00}) {
+      for (const std::uint8_t byte : Bytes{0x55, 0xFF, 0x00}) {
         line.bridge.out.push_front({byte, 1'000'000});
       }
     }

@@ -37,7 +37,7 @@ unsigned LineRate::best() const {
   unsigned best = 0;
   for (unsigned i = 1; i <= limit_; ++i) {
     const bool offered = ((offered_ >> i) & 1U) != 0;
-    if (offered && rate_bps(static_cast<std::uint8_t>(i)) <= highest_bps_) {
+    if (offered && bps_of(i) <= highest_bps_) {
       best = i;
     }
   }
@@ -46,8 +46,7 @@ unsigned LineRate::best() const {
 
 std::optional<std::uint32_t> LineRate::ask() {
   asked_ = best();
-  return asked_ == rate_ ? std::nullopt
-                         : std::optional(rate_bps(static_cast<std::uint8_t>(asked_)));
+  return asked_ == rate_ ? std::nullopt : std::optional(bps_of(asked_));
 }
 
 void LineRate::unanswered() {

@@ -18,7 +18,7 @@ class LineRate {
   /// @param highest_bps the highest that may be used.
   explicit LineRate(std::uint32_t highest_bps) : highest_bps_(highest_bps) {}
 
-  [[nodiscard]] std::uint32_t bps() const { return rate_bps(rate_); }
+  [[nodiscard]] std::uint32_t bps() const { return bps_of(rate_); }
 
   // --- when a session comes about ----------------------------------------------------------------
 
@@ -60,6 +60,9 @@ class LineRate {
   bool is_to_step_down();
 
  private:
+  [[nodiscard]] static std::uint32_t bps_of(unsigned rate) {
+    return rate_bps(static_cast<std::uint8_t>(rate));
+  }
   [[nodiscard]] unsigned best() const;
   [[nodiscard]] int damaged_lately() const;
   void limit_below(unsigned rate) { limit_ = rate - (rate > 0 ? 1U : 0U); }
