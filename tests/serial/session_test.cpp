@@ -198,6 +198,64 @@ TEST(SerialSession, LearnsTheCrystalOfAControllerThatTurnsUpLater) {
   EXPECT_EQ(line.session.counters().sessions, 1U);
 }
 
+struct ResetCase {
+  const char* why;
+  std::uint32_t bitrate_bps;   // the session's
+  bool had_one_before;         // that the bridge has heard of
+  std::uint32_t ticks_before;  // the bridge's clock at its reset
+};
+
+// Else it would go on with a bridge that has forgotten all that it was told.
+TEST(SerialSession, IsLostWhenTheBoardIsResetJustBeforeHelloIsRepeated) {
+  constexpr std::uint32_t an_hour = 900'000'000;
+  for (const ResetCase& row : {ResetCase{"another bit rate", 125'000, false, 0},
+                               ResetCase{"another session before", 500'000, true, 0},
+                               ResetCase{"its time goes back", 500'000, false, an_hour}}) {
+    SCOPED_TRACE(row.why);
+    Line line({.line_rate_bps = 115'200, .bitrate_bps = row.bitrate_bps});
+    line.bridge.first_tick = row.ticks_before;
+    line.bridge.osc_khz = 0;
+    line.bridge.state = 4;
+    line.open();
+    if (row.had_one_before) {
+      line.session.end();
+      line.open();
+    }
+    line.run_for(300ms);
+    const std::uint64_t sessions = line.session.counters().sessions;
+    const int hellos = line.bridge.hellos;
+    // STATUS says that there is a controller; before its last byte has come, the board is reset.
+    bool is_told = false;
+    line.bridge.may_send = [&](const Bytes& body) {
+      is_told = is_told || body[0] == static_cast<std::uint8_t>(serial::Up::status);
+      return true;
+    };
+    line.bridge.state = 0;
+    line.at_each_step = [&, done = false]() mutable {
+      if (is_told && !done && line.bridge.out.size() == 1) {
+        done = true;
+        const auto last = line.bridge.out;
+        line.bridge.reset();
+        line.bridge.first_tick = 0;
+        line.bridge.out = last;
+      }
+    };
+    ASSERT_TRUE(line.run_until([&] { return line.bridge.hellos > hellos; }, 200ms));
+    ASSERT_TRUE(line.run_until([&] { return line.session.counters().sessions > sessions; }, 1s));
+    ASSERT_TRUE(line.run_until([&] { return line.session.phase() == Phase::ready; }, 1s));
+    EXPECT_EQ(line.bridge.bitrate_bps, row.bitrate_bps);
+  }
+}
+
+TEST(SerialSession, AsksForACrystalThatNobodyKnowsAFewTimesOnly) {
+  Line line;
+  line.bridge.osc_khz = 0;
+  line.open();
+  line.run_for(3s);
+  EXPECT_EQ(line.bridge.hellos, 5);
+  EXPECT_EQ(line.session.phase(), Phase::ready);
+}
+
 TEST(SerialSession, PollsTenTimesASecond) {
   Line line;
   line.open();
@@ -282,7 +340,7 @@ TEST(SerialRate, GarbageThatTheChangeOfRateMakesIsNoDamagedRecord) {
   line.at_each_step = [&] {
     if (!put && line.session.phase() == Phase::trying) {
       put = true;
-      for (const std::uint8_t byte : Bytes{0x55, 0xFF, 0x00}) {
+      for (const std::uint8_t byte : Bytes{0x00, 0xFF, 0x55}) {  // the last one first
         line.bridge.out.push_front({byte, 1'000'000});
       }
     }

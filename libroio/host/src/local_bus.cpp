@@ -27,6 +27,8 @@ constexpr std::chrono::seconds close_time{1};
 // Consumed frames are reported in lots, for it is a system call here and one in the hub.
 constexpr std::uint64_t consumed_lot = 512;
 constexpr std::chrono::milliseconds retry_interval{200};
+// A hub takes its clients' bytes within microseconds, unless it is stopped.
+constexpr std::chrono::seconds filter_time{1};
 
 /// The client of a local bus. A thread of its own reads, so that frames, and a hub to be replaced,
 /// do not wait for the program to call.
@@ -72,7 +74,8 @@ class LocalBus final : public Bus {
   void adopt(Connection connection);
   void offer_again();
   void disconnect();
-  bool read();
+  void fetch();
+  Stream::Read read();
   bool handle(const Record& record);
   bool take_delivery(const Deliver& deliver);
   void take_done(const Done& done);
@@ -93,7 +96,10 @@ class LocalBus final : public Bus {
 
   mutable std::mutex mutex_;
   std::condition_variable all_done_;
+  std::condition_variable flushed_;  // or the connection is another, or none
   std::optional<Connection> connection_;
+  std::uint64_t connection_number_ = 0;
+  bool over_ = false;  // the connection is, and the reading thread has not seen to it yet
   std::vector<SocketCanFilter> filters_;
   std::array<std::deque<OfferedFrame>, lane_count> sent_;  // not reported done yet
   std::array<std::size_t, lane_count> offered_{};          // of sent_, to this hub
@@ -170,9 +176,8 @@ Transfer LocalBus::receive(std::span<Received> frames, Timeout timeout) {
 }
 
 std::size_t LocalBus::take(std::span<Received> frames) {
-  if (waits_.is_cancelled() && queue_.size() == 0 && connection_) {
-    // What has come, and the reading thread has not got round to; an end it will see, too.
-    static_cast<void>(read());
+  if (waits_.is_cancelled() && connection_) {
+    fetch();
   }
   const std::size_t count = queue_.take(frames);
   const std::size_t before = std::min(count, queued_before_);
@@ -180,6 +185,20 @@ std::size_t LocalBus::take(std::span<Received> frames) {
   consumed_ += count - before;
   report_consumed();
   return count;
+}
+
+// What has come, and the reading thread has not got round to.
+void LocalBus::fetch() {
+  while (queue_.size() == 0 && !over_) {
+    const Stream::Read got = read();
+    over_ = got == Stream::Read::end;
+    if (got == Stream::Read::nothing) {
+      return;
+    }
+  }
+  if (over_) {
+    wake_.set();
+  }
 }
 
 void LocalBus::report_consumed() {
@@ -194,12 +213,20 @@ void LocalBus::set_filters(std::span<const SocketCanFilter> filters) {
   if (filters.size() > max_filters) {
     throw std::system_error(Errc::too_many_filters, name_);
   }
-  const std::lock_guard lock(mutex_);
+  std::unique_lock lock(mutex_);
   filters_.assign(filters.begin(), filters.end());
-  if (connection_) {
-    append_filters(connection_->stream.out(), filters_);
-    flush();
+  if (!connection_) {
+    return;  // the next one begins with them
   }
+  append_filters(connection_->stream.out(), filters_);
+  flush();
+  // In the socket they are before whatever anybody sends after this.
+  const std::uint64_t end = connection_->stream.appended();
+  const std::uint64_t number = connection_number_;
+  flushed_.wait_for(lock, filter_time, [this, end, number] {
+    return !connection_ || connection_number_ != number || connection_->stream.sent() >= end ||
+           waits_.is_closed();
+  });
 }
 
 BusState LocalBus::state() const {
@@ -224,6 +251,7 @@ void LocalBus::close() noexcept {
       return;
     }
     waits_.close();
+    flushed_.notify_all();
     all_done_.wait_for(lock, close_time, [this] { return unacknowledged() == 0; });
     statistics_.unsent += unacknowledged();
   }
@@ -261,27 +289,29 @@ void LocalBus::serve() {
   const std::lock_guard lock(mutex_);
   wake_.clear();
   static_cast<void>(connection_->stream.flush());
-  if (!read()) {
+  over_ = over_ || read() == Stream::Read::end;
+  if (over_) {
     disconnect();
     ++statistics_.outages;
   }
+  flushed_.notify_all();
 }
 
-/// One buffer's worth, so that the program gets its turn. @return false: the connection is over.
-bool LocalBus::read() {
+/// One buffer's worth, so that the program gets its turn. @return end: also of what is no record.
+Stream::Read LocalBus::read() {
   Stream& stream = connection_->stream;
   if (const Stream::Read read = stream.read(); read != Stream::Read::some) {
-    return read == Stream::Read::nothing;
+    return read;
   }
   Record record{};
   Split split = Split::incomplete;
   while ((split = stream.take(record)) == Split::record) {
     if (!handle(record)) {
-      return false;
+      return Stream::Read::end;
     }
   }
   report_consumed();  // duplicates are, though nobody takes them
-  return split == Split::incomplete;
+  return split == Split::incomplete ? Stream::Read::some : Stream::Read::end;
 }
 
 /// @return false: no hub of ours sends this.
@@ -359,6 +389,8 @@ void LocalBus::reconnect() {
 
 void LocalBus::adopt(Connection connection) {
   connection_.emplace(std::move(connection));
+  ++connection_number_;
+  over_ = false;
   index_ = announced_ = consumed_ = reported_ = 0;
   queued_before_ = queue_.size();
   append_filters(connection_->stream.out(), filters_);

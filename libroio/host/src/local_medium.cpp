@@ -6,15 +6,15 @@
 
 namespace roio::local {
 
-void Station::ready() {
+void Station::asked_again() {
   for (Lane& lane : lanes_) {
-    lane.contending = std::exchange(lane.next, lane.waiting.size());
+    lane.ready = std::exchange(lane.next_ready, lane.waiting.size());
   }
 }
 
 std::optional<std::size_t> Station::lane() const {
   for (std::size_t lane = 0; lane < lane_count; ++lane) {
-    if (lanes_.at(lane).contending > 0) {
+    if (waiting(lane) > 0) {
       return lane;
     }
   }
@@ -25,8 +25,8 @@ Station::Offer Station::take() {
   Lane& lane = lanes_.at(*this->lane());
   const Offer offer = lane.waiting.front();
   lane.waiting.pop_front();
-  --lane.contending;
-  --lane.next;
+  --lane.ready;
+  --lane.next_ready;
   return offer;
 }
 
@@ -43,7 +43,7 @@ void Medium::drop_detached() {
 
 void Medium::asked_all(TimePoint now) {
   for (const auto& station : stations_) {
-    station->ready();
+    station->asked_again();
   }
   if (!contended_) {
     idle_since_ = std::max(idle_since_, now);
@@ -84,7 +84,7 @@ std::optional<Medium::Transmission> Medium::arbitrate() {
   std::uint32_t lowest = 0;
   for (std::size_t i = 0; i < stations_.size(); ++i) {
     const std::size_t index = (first_ + i) % stations_.size();
-    if (!stations_[index]->lane()) {
+    if (stations_[index]->empty()) {
       continue;
     }
     const std::uint32_t key = arbitration_key(stations_[index]->front().frame);
@@ -93,7 +93,7 @@ std::optional<Medium::Transmission> Medium::arbitrate() {
       lowest = key;
     }
   }
-  if (!winner) {
+  if (!winner || !stations_[*winner]->may_take()) {
     return std::nullopt;
   }
   first_ = *winner + 1;  // so that two stations with one identifier take turns

@@ -14,7 +14,7 @@
 namespace roio::local {
 
 /// One client's frames that wait for the bus: what a controller's transmit buffers are on a real
-/// one. A frame is given first, and contends for the bus once ready() has been called twice.
+/// one. A frame is given first, and may be taken once asked_again() has been called twice.
 class Station {
  public:
   explicit Station(std::uint64_t sender) : sender_(sender) {}
@@ -25,8 +25,9 @@ class Station {
   };
 
   void add(std::size_t lane, const Offer& offer) { lanes_.at(lane).waiting.push_back(offer); }
-  /// Lets those frames contend that had been added when this was last called.
-  void ready();
+  /// Every client has been asked once more: what had been added when this was last called, may be
+  /// taken from now on.
+  void asked_again();
   [[nodiscard]] std::uint64_t sender() const { return sender_; }
   [[nodiscard]] bool empty() const {
     return waiting(urgent_lane) == 0 && waiting(normal_lane) == 0;
@@ -35,18 +36,19 @@ class Station {
     return lanes_.at(lane).waiting.size();
   }
 
-  /// The lane that this station contends with: urgent frames pass normal ones. None when no frame
-  /// contends.
+  /// The lane that this station contends with: urgent frames pass normal ones. None when empty.
   [[nodiscard]] std::optional<std::size_t> lane() const;
-  /// The first frame of that lane, without or with taking it. Not when there is none.
+  /// The first frame of that lane. Not when empty.
   [[nodiscard]] const Offer& front() const { return lanes_.at(*lane()).waiting.front(); }
+  /// Whether it may be taken yet.
+  [[nodiscard]] bool may_take() const { return lanes_.at(*lane()).ready > 0; }
   Offer take();
 
  private:
   struct Lane {
     std::deque<Offer> waiting;
-    std::size_t contending = 0;  // of waiting, from the front
-    std::size_t next = 0;        // contending, when ready() is called next
+    std::size_t ready = 0;       // of waiting, from the front: may be taken
+    std::size_t next_ready = 0;  // ready, once asked_again() has been called
   };
 
   std::uint64_t sender_;
@@ -77,10 +79,10 @@ class Medium {
 
   /// Tells that every client has been asked once more, at `now`, for what it has sent.
   ///
-  /// Frames that stations had been given before that round contend from now on; those of the round
-  /// itself do not yet. For clients are asked one after the other: what the first sent before the
-  /// last did (its filters: it means to hear the last one's frame) may have come just after it was
-  /// asked, and is known a round later.
+  /// Frames that stations had been given before that round may pass from now on; those of the round
+  /// itself not yet. For clients are asked one after the other: what the first sent before the last
+  /// did (its filters: it means to hear the last one's frame) may have come just after it was
+  /// asked, and is known a round later. A frame that would win is waited for.
   void asked_all(TimePoint now);
 
   /// The next frame that has passed by `now`, if there is one. Call until there is none.

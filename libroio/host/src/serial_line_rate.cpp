@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <utility>
 
 #include "serial_payloads.hpp"
 
@@ -91,14 +92,14 @@ void LineRate::note_intact() {
 
 bool LineRate::note_damaged() {
   history_ = (history_ << 1U) | 1U;
-  return has_heard_;
+  return std::exchange(has_heard_, true);
 }
 
 int LineRate::damaged_lately() const {
   return std::popcount(history_);
 }
 
-bool LineRate::is_to_step_down() {
+bool LineRate::step_down_if_due() {
   if (rate_ == 0 || damaged_lately() <= tolerable_of_history) {
     return false;
   }

@@ -51,13 +51,13 @@ class LineRate {
   // --- what comes --------------------------------------------------------------------------------
 
   void note_intact();
-  /// A record has come to harm. @return false: no record; the change of rate makes garbage, and
-  /// before the first echo the bridge sends nothing.
+  /// A record has come to harm. @return false: it is the first thing at this rate, and so may be
+  /// the garbage that the change of rate makes.
   bool note_damaged();
   /// A record has come to harm on its way down, as an intact one says.
   void note_damaged_down() { history_ |= 1U; }
-  /// @return whether records are damaged so often that ask() has a lower rate from now on.
-  bool is_to_step_down();
+  /// Limits ask() to lower rates when records are damaged often. @return whether it did.
+  bool step_down_if_due();
 
  private:
   [[nodiscard]] static std::uint32_t bps_of(unsigned rate) {
@@ -75,7 +75,7 @@ class LineRate {
   unsigned limit_ = rate_count - 1U;  // what has shown to be too fast is above
   unsigned unanswered_ = 0;
   std::uint32_t missing_ = 0;  // echoes, one bit each
-  bool has_heard_ = true;      // something intact, at this rate
+  bool has_heard_ = true;      // something, at this rate
   std::uint64_t history_ = 0;  // of the last 64 records: 1 is damaged
 };
 

@@ -31,6 +31,8 @@ constexpr milliseconds request_interval{100};
 constexpr unsigned max_tries = 4;
 
 constexpr unsigned polls_per_counters = 10;
+constexpr unsigned max_questions = 4;   // for the crystal, in a session
+constexpr unsigned max_impossible = 2;  // STATUS in a row
 // As much may wait for the port; then it does not take any, and nothing is added.
 constexpr std::size_t clogged = 1024;
 
@@ -319,7 +321,7 @@ void SerialSession::fail_trial(Time now) {
 }
 
 void SerialSession::step_down_if_needed(Time now) {
-  if (phase_ != Phase::ready || asked_ || !line_rate_.is_to_step_down()) {
+  if (phase_ != Phase::ready || asked_ || !line_rate_.step_down_if_due()) {
     return;
   }
   ++counters_.step_downs;
@@ -614,7 +616,8 @@ bool SerialSession::take_frame(std::span<const std::uint8_t> body, Time now) {
     return false;
   }
   if (in_session() && repeated_.take(body)) {
-    return false;
+    ++counters_.damaged;  // which a lower line rate would not mend
+    return true;
   }
   if (in_session()) {
     up_.take(body[sequence_at]);
@@ -638,7 +641,9 @@ bool SerialSession::take_welcome(std::span<const std::uint8_t> payload, Time now
   }
   if (phase_ == Phase::calling) {
     open_session(*welcome, now);
-  } else {  // HELLO was repeated
+  } else if (!is_still(*welcome)) {
+    lose(now);  // the board was reset, and takes this for the first it hears of the session
+  } else {
     info_.osc_khz = welcome->info.osc_khz;
     info_.interrupt_wired = welcome->info.interrupt_wired;
   }
@@ -649,7 +654,10 @@ void SerialSession::open_session(const Welcome& welcome, Time now) {
   if (welcome.previous_session != no_session && welcome.previous_session == last_session_) {
     up_.settle(welcome.previous_due);
   }
+  previous_session_ = welcome.previous_session;
   info_ = welcome.info;
+  questions_ = 0;
+  impossible_ = 0;
   line_rate_.offer(welcome.rates, welcome.info.line_rate_matters);
   up_.begin();
   repeated_.begin();
@@ -665,17 +673,37 @@ void SerialSession::open_session(const Welcome& welcome, Time now) {
   go_on(now);
 }
 
+/// Whether the bridge is the one that the session was opened with, and has what it was told.
+bool SerialSession::is_still(const Welcome& welcome) const {
+  const bool is_set_up =
+      welcome.info.bitrate_bps == info_.bitrate_bps && welcome.info.mode == info_.mode;
+  return welcome.previous_session == previous_session_ &&
+         (is_set_up || asked_ || phase_ != Phase::ready);
+}
+
 bool SerialSession::take_status(std::span<const std::uint8_t> payload, Time now) {
   const std::optional<BridgeStatus> status = read_status(payload);
-  if (!status || !clock_.status(status->ticks, now) || !up_.settle(status->due)) {
+  if (!status) {
     return false;
   }
+  if (!clock_.status(status->ticks, now) || !up_.settle(status->due)) {
+    // One may be a record that the line repeats. Two: a board that was reset, and that HELLO has
+    // brought into this session again.
+    if (++impossible_ < max_impossible) {
+      return false;
+    }
+    lose(now);
+    return true;
+  }
+  impossible_ = 0;
   const BridgeState before = std::exchange(info_.state, status->state);
   info_.transmit_errors = status->transmit_errors;
   info_.receive_errors = status->receive_errors;
   counters_wanted_ = counters_wanted_ || before != info_.state;
   // WELCOME came before there was a controller, and could not say what crystal it has.
-  if (info_.osc_khz == 0 && controller_works() && phase_ == Phase::ready) {
+  if (info_.osc_khz == 0 && controller_works() && phase_ == Phase::ready && !asked_ &&
+      !line_is_clogged() && questions_ < max_questions) {
+    ++questions_;
     append_hello();
   }
   return true;

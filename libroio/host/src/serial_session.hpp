@@ -205,6 +205,7 @@ class SerialSession {
   void lose(Time now);
   void refuse(Status status, Time now);
   void open_session(const serial::Welcome& welcome, Time now);
+  [[nodiscard]] bool is_still(const serial::Welcome& welcome) const;
   void go_on(Time now);
   void set_up_bus(Time now);
   void serve_timers(Time now);
@@ -260,6 +261,9 @@ class SerialSession {
   std::optional<Asked> asked_;
   std::deque<Request> requests_;
   unsigned polls_ = 0;
+  std::uint32_t previous_session_ = serial::no_session;  // before this one, as WELCOME had it
+  unsigned questions_ = 0;                               // for the crystal
+  unsigned impossible_ = 0;                              // STATUS in a row
 
   // What is known of the bridge.
   BridgeInfo info_;

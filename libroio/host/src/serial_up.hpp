@@ -51,9 +51,9 @@ class UpCount {
 };
 
 /// Tells a record that the line repeats from a frame with the same sequence, 256 frames later: it
-/// is one of the last 16, byte for byte, the time included. For that to be another frame, 240 in a
-/// row would have to be lost, and it to be read from the controller a multiple of 262.144 ms later,
-/// to 4 us.
+/// is one of the last 16, byte for byte, the time included. For that to be another frame, 240 of
+/// the 255 in between would have to be lost, and it to be read from the controller a multiple of
+/// 262.144 ms later, to 4 us.
 class RepeatedFrames {
  public:
   /// Another session.

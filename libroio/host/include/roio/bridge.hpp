@@ -91,7 +91,8 @@ struct BridgeCounters {
 /// What this side has counted of the serial line since open().
 struct BridgeLineCounters {
   std::uint64_t sessions = 0;  ///< That have been opened; every one but the first is an outage.
-  std::uint64_t damaged = 0;   ///< Records from the bridge that were not intact, or no sense.
+  std::uint64_t damaged = 0;   ///< Records from the bridge that were not intact, repeated by the
+                               ///< line, or no sense; not what a change of line rate begins with.
   std::uint64_t lost = 0;      ///< Frames from the bridge that were due and did not come.
   std::uint64_t resent = 0;    ///< Records of frames sent again, the bridge having missed them.
   std::uint64_t retries = 0;   ///< Requests repeated for want of a reply.
