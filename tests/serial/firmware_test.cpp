@@ -462,7 +462,7 @@ TEST(SerialFirmware, WithoutAControllerFramesWait) {
 }
 
 TEST(SerialFirmware, ACrystalThatTurnsUpLateIsKnown) {
-  BoardLine line;
+  BoardLine line({.bitrate_bps = 125'000, .mode = BridgeMode::listen});
   line.board.set_chip_fault(sim::SpiWire::Fault::stuck_high);
   line.open();
   EXPECT_EQ(line.session.info().state, BridgeState::no_controller);
@@ -470,7 +470,9 @@ TEST(SerialFirmware, ACrystalThatTurnsUpLateIsKnown) {
   line.board.set_chip_fault(sim::SpiWire::Fault::none);
   EXPECT_TRUE(line.run_until([&] { return line.session.info().osc_khz == 16'000; }, 1s));
   EXPECT_TRUE(line.session.info().interrupt_wired);
+  line.run_for(1s);
   EXPECT_EQ(line.session.counters().sessions, 1U);
+  EXPECT_EQ(line.session.info().state, BridgeState::active);
 }
 
 /// Its INT line stays low meanwhile, for it still holds frames.
