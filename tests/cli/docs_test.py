@@ -13,15 +13,14 @@ import re
 import stat
 import subprocess
 
-from driver import CLI, GUARD, CliTest, main, masked
+from driver import CLI, GUARD, ON_SOCKETCAN, CliTest, main, masked
 
 WITH_BRIDGE = "ROIO_SIM" in os.environ
 if WITH_BRIDGE:
-    from bridge_test import start_bridge, without_repeats
+    from bridge_test import ATTACH_TRIES, NO_ANSWER, start_bridge, without_repeats
 
 DOCUMENT = os.environ["ROIO_CLI_DOCUMENT"]
 PORT = "/dev/ttyACM0"
-ON_SOCKETCAN = "ROIO_CLI_ON_SOCKETCAN" in os.environ
 
 # Stands for roio-cli in the background: says in a file when it listens.
 LISTENER = r"""#!/bin/bash
@@ -60,13 +59,16 @@ def split(block):
     return commands, "".join(output)
 
 
-# In the lab, a virtual machine on a busy one, the simulated board may take longer to answer than a
-# program waits for a real one. What ended is reaped, so that the next is job 1 again.
+# Waits until it is attached, or has failed. What ended is reaped, so that the next is job 1 again.
 ATTACH = """attach() {
-  for _ in $TRIES; do
+  for ((left = TRIES; left > 0; --left)); do
     $1 >"$2" 2>&1 &
     until grep -q ": attached to " "$2"; do
-      kill -0 $! 2>/dev/null || { wait $!; continue 2; }
+      if ! kill -0 $! 2>/dev/null; then
+        wait $!
+        grep -q "$NO_ANSWER" "$2" || return
+        continue 2
+      fi
       sleep 0.01
     done
     return
@@ -101,8 +103,7 @@ class DocumentTest(CliTest):
             file.write(LISTENER)
             os.fchmod(file.fileno(), stat.S_IRWXU)
         env = dict(os.environ, PATH=programs + ":" + os.environ["PATH"],
-                   LISTENING=self.path("listening"), OUT=self.path("out"),
-                   TRIES="1 2 3" if ON_SOCKETCAN else "1")
+                   LISTENING=self.path("listening"), OUT=self.path("out"))
         blocks = list(console_blocks())
         self.assertNotEqual(blocks, [])
         for line, block in blocks:
@@ -127,7 +128,8 @@ class DocumentTest(CliTest):
         commands, output = split(block)
         sim, port = start_bridge(self)
         printed = self.printed([command.replace(PORT, port) for command in commands],
-                               dict(env, ROIO_SERIAL_PORTS=port)).replace(port, PORT)
+                               dict(env, ROIO_SERIAL_PORTS=port, TRIES=str(ATTACH_TRIES),
+                                    NO_ANSWER=NO_ANSWER)).replace(port, PORT)
         sim.end()
         self.assertEqual(*(re.sub(" +", " ", without_repeats(text)) for text in (printed, output)))
 

@@ -14,6 +14,7 @@ import unittest
 
 CLI = os.environ["ROIO_CLI"]
 GUARD = 60  # seconds
+ON_SOCKETCAN = "ROIO_CLI_ON_SOCKETCAN" in os.environ  # real SocketCAN is there: in the lab
 
 
 def masked(text):

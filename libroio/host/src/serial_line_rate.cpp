@@ -26,15 +26,11 @@ void LineRate::start_over() {
 }
 
 void LineRate::offer(std::uint8_t rates, bool matters) {
-  offered_ = rates;
-  matters_ = matters;
+  offered_ = matters ? rates : std::uint8_t{1};
   history_ = 0;
 }
 
 unsigned LineRate::best() const {
-  if (!matters_) {
-    return 0;
-  }
   unsigned best = 0;
   for (unsigned i = 1; i <= limit_; ++i) {
     const bool offered = ((offered_ >> i) & 1U) != 0;

@@ -68,8 +68,7 @@ class LineRate {
   void limit_below(unsigned rate) { limit_ = rate - (rate > 0 ? 1U : 0U); }
 
   std::uint32_t highest_bps_;
-  std::uint8_t offered_ = 1;
-  bool matters_ = true;
+  std::uint8_t offered_ = 1;  // the base rate
   unsigned rate_ = 0;
   unsigned asked_ = 0;
   unsigned limit_ = rate_count - 1U;  // what has shown to be too fast is above

@@ -615,15 +615,16 @@ bool SerialSession::take_frame(std::span<const std::uint8_t> body, Time now) {
   if (!read_frame(body.data(), static_cast<std::uint8_t>(body.size()), frame_head_up, frame)) {
     return false;
   }
-  if (in_session() && repeated_.take(body)) {
+  if (!in_session()) {
+    return true;
+  }
+  if (repeated_.take(body)) {
     ++counters_.damaged;  // which a lower line rate would not mend
     return true;
   }
-  if (in_session()) {
-    up_.take(body[sequence_at]);
-    const std::uint64_t lost_before = up_.lost() - std::exchange(lost_told_, up_.lost());
-    arrived_.push_back({frame, clock_.frame(get16(&body[time_at]), now), lost_before});
-  }
+  up_.take(body[sequence_at]);
+  const std::uint64_t lost_before = up_.lost() - std::exchange(lost_told_, up_.lost());
+  arrived_.push_back({frame, clock_.frame(get16(&body[time_at]), now), lost_before});
   return true;
 }
 
