@@ -1,0 +1,1 @@
+// Nothing but what is precompiled: tests/CMakeLists.txt says which headers.
