@@ -1,11 +1,11 @@
-// Lets user-mode Linux run where a processor has more registers than it knows of; scripts/lab compiles
-// and preloads it there.
+// Lets user-mode Linux run where a processor has more registers than it knows of; scripts/lab
+// compiles and preloads it there.
 //
 // User-mode Linux keeps 2,696 bytes of a process's extended state, up to AVX-512 and PKRU. A kernel
-// that has more (AMX: 11 KB) takes and gives the state only whole, so that ptrace() ends with EFAULT and
-// the machine stops. This ptrace() asks for all of it, hands on what fits, and gives the rest back as
-// unused: a program in the lab cannot use AMX, and loses nothing else.
-// Source: Intel SDM volume 1, 13.4 (standard format of the XSAVE area); ptrace(2), PTRACE_GETREGSET.
+// that has more (AMX: 11 KB) takes and gives the state only whole, so that ptrace() ends with
+// EFAULT and the machine stops. This ptrace() asks for all of it, hands on what fits, and gives the
+// rest back as unused: a program in the lab cannot use AMX, and loses nothing else. Source: Intel
+// SDM volume 1, 13.4 (standard format of the XSAVE area); ptrace(2), PTRACE_GETREGSET.
 #define _GNU_SOURCE
 #include <dlfcn.h>
 #include <elf.h>
@@ -19,7 +19,8 @@ enum {
   most_bytes = 65536,  // far above what a processor has
   xstate_bv_at = 512,  // which components follow, a bit each
 };
-#define KNOWN_COMPONENTS UINT64_C(0x2ff)  // x87, SSE, AVX, MPX, AVX-512, PKRU: all within 2,696 bytes
+#define KNOWN_COMPONENTS \
+  UINT64_C(0x2ff)  // x87, SSE, AVX, MPX, AVX-512, PKRU: all within 2,696 bytes
 
 typedef long Ptrace(int, pid_t, void*, void*);
 
