@@ -11,8 +11,8 @@ constexpr Address node{0, 2};
 TEST(DocumentSketch, OfTheReadmeSwitchesAPin) {
   SketchRig rig(sim::BoardKind::uno, "ProjectReadme");
   std::vector<bool> levels;
-  rig.board.on_pin(8, [&](bool high) { levels.push_back(high); });
   rig.bus.run_for(20ms);
+  rig.board.on_pin(8, [&](sim::SimTime, bool high) { levels.push_back(high); });
   rig.send(node, {1});
   rig.bus.run_for(5ms);
   rig.send(node, {1, 2});  // no order: left alone
