@@ -6,7 +6,7 @@
 #   ROIO_BOARDS      uno, leonardo, mega
 #   add_arduino_image(<target> <board> <sketch.ino>)
 #
-# Images need ROIO_BUILD_FIRMWARE. Who uses one depends on its target, image_<board>_<Sketch> for an
+# Images are built when asked for. Who uses one depends on its target, image_<board>_<Sketch> for an
 # example, or on arduino_images.
 find_package(Python3 REQUIRED COMPONENTS Interpreter)
 
@@ -54,17 +54,26 @@ add_custom_command(OUTPUT ${ROIO_LIBRARY_ZIP}
   COMMENT "Packing the Arduino library" VERBATIM)
 add_custom_target(arduino_library DEPENDS ${ROIO_LIBRARY_ZIP})
 
-if(NOT ROIO_BUILD_FIRMWARE)
-  return()
-endif()
-
 # --- the tools ----------------------------------------------------------------------
 
-find_program(ARDUINO_BUILDER arduino-builder REQUIRED)
-find_program(ARDUINO_CTAGS arduino-ctags REQUIRED)
-find_path(ARDUINO_HARDWARE arduino/avr/boards.txt PATHS /usr/share/arduino/hardware REQUIRED)
-find_program(AVR_CXX avr-g++ REQUIRED)
-find_program(AVR_SIZE avr-size REQUIRED)
+if(ROIO_BUILD_FIRMWARE)
+  set(required REQUIRED)
+endif()
+find_program(ARDUINO_BUILDER arduino-builder ${required})
+find_program(ARDUINO_CTAGS arduino-ctags ${required})
+find_path(ARDUINO_HARDWARE arduino/avr/boards.txt PATHS /usr/share/arduino/hardware ${required})
+find_program(AVR_CXX avr-g++ ${required})
+find_program(AVR_SIZE avr-size ${required})
+foreach(tool IN ITEMS ARDUINO_BUILDER ARDUINO_CTAGS ARDUINO_HARDWARE AVR_CXX AVR_SIZE)
+  if(NOT ${tool})
+    # Who only wants the library and the tools can do without.
+    add_custom_target(arduino_images
+      COMMAND ${CMAKE_COMMAND} -E echo
+              "No Arduino images can be built: ${tool} was not found. Run scripts/setup demo, then cmake again."
+      COMMAND ${CMAKE_COMMAND} -E false VERBATIM)
+    return()
+  endif()
+endforeach()
 cmake_path(GET AVR_CXX PARENT_PATH toolchain)
 cmake_path(GET toolchain PARENT_PATH toolchain)
 

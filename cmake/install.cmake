@@ -32,7 +32,7 @@ install(DIRECTORY libroio/core/include/ libroio/host/include/ TYPE INCLUDE
 install(TARGETS roio_core roio_host EXPORT roio-targets)
 install(EXPORT roio-targets NAMESPACE roio:: DESTINATION ${roio_config_dir})
 if(ROIO_BUILD_JSON)
-  install(TARGETS roio_json EXPORT roio-json-targets)
+  install(TARGETS roio_json_library EXPORT roio-json-targets)
   install(EXPORT roio-json-targets NAMESPACE roio:: DESTINATION ${roio_config_dir})
 endif()
 

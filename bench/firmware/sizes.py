@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """What a node costs an Uno in flash and RAM: usage: sizes.py IMAGES
 
-IMAGES is the folder with the images of a board, by tests/firmware_load/images.cmake and the examples.
+IMAGES is the folder with the images of a board, by tests/firmware/load/images.cmake and the examples.
 Prints tables as docs/performance.md has them: each sketch beyond one that does nothing, and where Echo's
 bytes are. Needs avr-size and avr-nm.
 """

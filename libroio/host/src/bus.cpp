@@ -3,7 +3,9 @@
 #include <roio/text.hpp>
 #include <string>
 
-#include "backends.hpp"
+#include "local/bus.hpp"
+#include "serial/bus.hpp"
+#include "socketcan/bus.hpp"
 
 namespace roio {
 

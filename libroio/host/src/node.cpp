@@ -1,7 +1,6 @@
-#include "deadline.hpp"
-
 #include <algorithm>
 #include <roio/node.hpp>
+#include <roio/parts/deadline.hpp>
 #include <roio/text.hpp>
 #include <stdexcept>
 #include <utility>

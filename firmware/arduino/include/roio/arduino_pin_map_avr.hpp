@@ -1,6 +1,6 @@
 /// Where the pins of the common AVR boards are, known when compiling: Arduino's own tables lie in
 /// flash, where a compiler does not look. A board that is not here costs a lookup, and works.
-/// tests/arduino compares these with Arduino's tables.
+/// tests/firmware/arduino compares these with Arduino's tables.
 /// Source: Arduino's variants standard, leonardo, mega (pins_arduino.h).
 #ifndef ROIO_ARDUINO_PIN_MAP_AVR_HPP
 #define ROIO_ARDUINO_PIN_MAP_AVR_HPP

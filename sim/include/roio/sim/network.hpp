@@ -9,7 +9,7 @@
 /// A thread of the network's own runs simulated time, for the bus and for the processors of all
 /// participants: each driver is called every 25 us of simulated time. What these processors do
 /// takes no simulated time, SPI included: at these intervals no chip is ever full. What the driver
-/// makes of a slow SPI is tests/driver's subject, not this one's.
+/// makes of a slow SPI is tests/firmware/driver's subject, not this one's.
 ///
 /// What differs from other kinds of Bus: arbitration, bit stuffing, errors and bus-off are the
 /// wire's; two participants that send the same identifier at the same time collide, as they would

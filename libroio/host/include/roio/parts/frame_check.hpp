@@ -1,0 +1,15 @@
+#ifndef ROIO_PARTS_FRAME_CHECK_HPP
+#define ROIO_PARTS_FRAME_CHECK_HPP
+
+#include <roio/frame.hpp>
+#include <span>
+
+namespace roio {
+
+/// What every backend asks of frames before it sends the first of them.
+/// @throws std::system_error Errc::bad_frame, naming the frame and what is wrong with it.
+void check_sendable(std::span<const Frame> frames);
+
+}  // namespace roio
+
+#endif

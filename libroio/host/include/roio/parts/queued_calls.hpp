@@ -1,0 +1,71 @@
+#ifndef ROIO_PARTS_QUEUED_CALLS_HPP
+#define ROIO_PARTS_QUEUED_CALLS_HPP
+
+#include <poll.h>
+
+#include <cstddef>
+#include <optional>
+#include <roio/bus.hpp>
+#include <roio/parts/deadline.hpp>
+#include <roio/parts/fd.hpp>
+#include <roio/parts/waits.hpp>
+#include <span>
+
+/// The course of Bus::send() and Bus::receive() where another thread serves queues: the same for
+/// all such buses, whatever is behind the queues.
+namespace roio {
+
+/// @param take how many frames it has taken; none: the bus is closed.
+/// @param readable set while there may be some.
+template <typename Take>
+Transfer receive_queued(const Waits& waits, const EventFlag& readable, std::span<Received> frames,
+                        Timeout timeout, const Take& take) {
+  const Deadline deadline(timeout);
+  for (;;) {
+    const bool cancelled = waits.is_cancelled();  // before it looks: what is there then is given
+    const std::optional<std::size_t> count = take(frames);
+    if (!count) {
+      return {Result::closed, 0};
+    }
+    if (*count > 0) {
+      return {Result::ok, *count};
+    }
+    if (cancelled || frames.empty() || deadline.passed()) {
+      return {cancelled ? Result::cancelled : Result::timeout, 0};
+    }
+    static_cast<void>(waits.wait({readable.fd(), POLLIN}, deadline.remaining()));
+  }
+}
+
+/// @param offer how many of the frames it has accepted; none: the bus is closed. If not all, it has
+///        cleared `sendable`, which is set when there may be room again.
+/// @param count told each time that it waits (false), and when it gives up at its deadline (true).
+template <typename Offer, typename Count>
+Transfer send_queued(const Waits& waits, const EventFlag& sendable, std::span<const Frame> frames,
+                     Timeout timeout, const Offer& offer, const Count& count) {
+  const Deadline deadline(timeout);
+  std::size_t sent = 0;
+  for (;;) {
+    const std::optional<std::size_t> accepted = offer(frames.subspan(sent));
+    if (!accepted) {
+      return {Result::closed, sent};
+    }
+    sent += *accepted;
+    if (sent == frames.size()) {
+      return {Result::ok, sent};
+    }
+    if (waits.is_cancelled()) {
+      return {Result::cancelled, sent};
+    }
+    const bool gives_up = deadline.passed();
+    count(gives_up);
+    if (gives_up) {
+      return {Result::timeout, sent};
+    }
+    static_cast<void>(waits.wait({sendable.fd(), POLLIN}, deadline.remaining()));
+  }
+}
+
+}  // namespace roio
+
+#endif

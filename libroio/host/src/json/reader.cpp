@@ -1,0 +1,118 @@
+#include <algorithm>
+#include <cstddef>
+#include <optional>
+#include <roio/json.hpp>
+
+#include "json/events.hpp"
+#include "json/fields.hpp"
+#include "text/quote.hpp"
+#include "text/utf8.hpp"
+
+namespace roio {
+namespace {
+
+constexpr std::size_t max_text = 4096;
+
+std::optional<Field> missing_field(const Fields& fields) {
+  for (const Field field :
+       {Field::type, Field::is_broadcast, Field::subnet, Field::message_length, Field::data}) {
+    if (!fields.has(field)) {
+      return field;
+    }
+  }
+  if (!fields.has(Field::address) && !fields.is_broadcast) {
+    return Field::address;
+  }
+  return std::nullopt;
+}
+
+// What each field allows on its own, and all of them together do not.
+std::optional<std::string> contradiction(const Fields& fields) {
+  const std::string address = std::to_string(fields.address);
+  if (fields.is_broadcast && fields.address != broadcast_node) {
+    return field_error(Field::address, address + " in a broadcast; expected 255, or none");
+  }
+  if (!fields.is_broadcast && fields.address == broadcast_node) {
+    return unexpected(Field::address, address + " without isBroadcast true");
+  }
+  if (fields.message_length != fields.data.length) {
+    return field_error(Field::message_length, std::to_string(fields.message_length) +
+                                                  R"(, but "data" has )" +
+                                                  std::to_string(fields.data.length));
+  }
+  const Address destination{fields.subnet, fields.address};
+  if (fields.has(Field::destination) && fields.destination != destination) {
+    return field_error(Field::destination, quote(to_string(fields.destination)) +
+                                               R"(, but "subnet" and "address" say )" +
+                                               quote(to_string(destination)));
+  }
+  return std::nullopt;
+}
+
+JsonMessage make_message(const Fields& fields) {
+  JsonMessage out;
+  out.message.header = {fields.priority, fields.message_class,
+                        Address{fields.subnet, fields.address}, fields.source};
+  out.message.length = fields.data.length;
+  std::copy(fields.data.data.begin(), fields.data.data.end(), out.message.data);
+  out.has_source = fields.has(Field::source);
+  out.time = fields.timestamp;
+  return out;
+}
+
+ParseError not_json(std::string_view text, const JsonEvents& events) {
+  const std::size_t offset = events.syntax_error().value_or(0);
+  const std::string field =
+      events.last_field() ? std::string(R"(, in or after field ")") + events.last_field() + '"'
+                          : "";
+  if (offset >= text.size()) {
+    return {"JSON: ends too early, after " + std::to_string(text.size()) + " bytes" + field,
+            text.size()};
+  }
+  const std::string there = quote(text.substr(offset));
+  if (events.is_complete()) {
+    return {"JSON: " + there + " after the message; expected nothing more", offset};
+  }
+  return {"JSON: not valid at byte " + std::to_string(offset) + field + ": " + there, offset};
+}
+
+std::optional<ParseError> check_text(std::string_view text) {
+  if (text.size() > max_text) {
+    return ParseError{"JSON: " + std::to_string(text.size()) + " bytes; expected at most " +
+                          std::to_string(max_text),
+                      max_text};
+  }
+  const std::size_t not_utf8 = find_not_utf8(text);
+  if (not_utf8 < text.size()) {
+    return ParseError{"JSON: not UTF-8 at byte " + std::to_string(not_utf8) + ", " +
+                          quote(text.substr(not_utf8, 1)),
+                      not_utf8};
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
+Parsed<JsonMessage> parse_json(std::string_view text) {
+  if (const auto error = check_text(text)) {
+    return *error;
+  }
+  JsonEvents events;
+  const bool is_read = nlohmann::json::sax_parse(text, &events);
+  if (events.error()) {
+    return *events.error();
+  }
+  if (!is_read) {
+    return not_json(text, events);
+  }
+  const Fields& fields = events.fields();
+  if (const auto missing = missing_field(fields)) {
+    return ParseError{unexpected(*missing, "missing"), text.size()};
+  }
+  if (const auto error = contradiction(fields)) {
+    return ParseError{*error, 0};
+  }
+  return make_message(fields);
+}
+
+}  // namespace roio

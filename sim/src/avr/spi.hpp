@@ -1,0 +1,54 @@
+/// AvrSpi: the SPI of an AVR as a master, in its true time: a byte takes 8 clocks of 2 to 128
+/// cycles, from the end of the instruction that writes SPDR. Source: ATmega328P datasheet, 18
+/// (the others' are the same, registers included).
+#ifndef ROIO_SIM_AVR_SPI_HPP
+#define ROIO_SIM_AVR_SPI_HPP
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+
+#include "avr/core.hpp"
+
+namespace roio::sim {
+
+class AvrSpi {
+ public:
+  explicit AvrSpi(AvrCore& core);
+
+  /// The end of the byte under way; the core runs no further than that.
+  [[nodiscard]] std::optional<AvrCore::Cycle> end() const { return end_; }
+  /// The byte as the wire carries it, most significant bit first.
+  [[nodiscard]] std::uint8_t out() const { return in_wire_order(out_); }
+  /// CPOL and CPHA.
+  [[nodiscard]] unsigned mode() const;
+  /// The byte is over, and this came in.
+  void finish(std::uint8_t in);
+  void reset();
+  /// Called when a byte is written while another is under way.
+  void on_collision(std::function<void()> listener) { collision_ = std::move(listener); }
+  /// Asked before a transfer: whether something pulls SS low while it is an input.
+  void set_slave_select(std::function<bool()> is_low) { slave_select_is_low_ = std::move(is_low); }
+
+ private:
+  void write_control(std::uint16_t address, std::uint8_t value);
+  void write_status(std::uint16_t address, std::uint8_t value);
+  void write_data(std::uint16_t address, std::uint8_t value);
+  std::uint8_t read_status(std::uint16_t address);
+  std::uint8_t read_data(std::uint16_t address);
+  void data_accessed();
+  [[nodiscard]] std::uint8_t in_wire_order(std::uint8_t byte) const;
+
+  AvrCore& core_;
+  avr_int_vector_t& vector_;
+  std::optional<AvrCore::Cycle> end_;
+  std::uint8_t out_ = 0;
+  std::uint8_t received_ = 0;
+  std::uint8_t seen_ = 0;  // flags that were set when SPSR was read
+  std::function<void()> collision_;
+  std::function<bool()> slave_select_is_low_;
+};
+
+}  // namespace roio::sim
+
+#endif

@@ -1,0 +1,163 @@
+#include "network/exchange.hpp"
+
+#include <algorithm>
+#include <utility>
+
+namespace roio::sim {
+Exchange::Exchange(const OpenOptions& options) : error_frames_(options.error_frames) {
+  if (!options.send_only) {
+    filters_ = {SocketCanFilter{0, 0}};
+  }
+}
+
+// --- the program's side --------------------------------------------------------------------------
+
+Exchange::Offered Exchange::offer(std::span<const Frame> frames, SimTime since) {
+  const std::lock_guard lock(mutex_);
+  Offered offered{0, lanes_[urgent_lane].empty() && lanes_[normal_lane].empty()};
+  const bool open = !closed_ && state_ != BusState::absent;
+  while (open && offered.count < frames.size()) {
+    const Frame& frame = frames[offered.count];
+    auto& lane = lanes_.at(lane_in_driver(frame));
+    if (lane.size() >= lane_capacity) {
+      break;
+    }
+    lane.push_back({frame, since});
+    ++offered.count;
+  }
+  statistics_.sent += offered.count;
+  offered.wake = offered.wake && offered.count > 0;
+  sender_waits_ = offered.count < frames.size();
+  if (sender_waits_) {
+    sendable_.clear();
+  }
+  return offered;
+}
+
+void Exchange::count_send_wait() {
+  const std::lock_guard lock(mutex_);
+  ++statistics_.send_waits;
+}
+
+void Exchange::count_send_timeout() {
+  const std::lock_guard lock(mutex_);
+  ++statistics_.send_timeouts;
+}
+
+std::size_t Exchange::take(std::span<Received> frames) {
+  const std::lock_guard lock(mutex_);
+  return queue_.take(frames);
+}
+
+void Exchange::set_filters(std::span<const SocketCanFilter> filters) {
+  const std::lock_guard lock(mutex_);
+  filters_.assign(filters.begin(), filters.end());
+}
+
+BusState Exchange::state() const {
+  const std::lock_guard lock(mutex_);
+  return state_;
+}
+
+Statistics Exchange::statistics() const {
+  const std::lock_guard lock(mutex_);
+  Statistics statistics = statistics_;
+  queue_.add_to(statistics);
+  return statistics;
+}
+
+void Exchange::close(std::chrono::nanoseconds patience) {
+  std::unique_lock lock(mutex_);
+  closed_ = true;
+  settled_.wait_for(lock, patience, [this] { return all_settled(); });
+}
+
+// --- the simulation's side -----------------------------------------------------------------------
+
+bool Exchange::all_settled() const {
+  return in_chip_ == 0 && lanes_[urgent_lane].empty() && lanes_[normal_lane].empty();
+}
+
+bool Exchange::has_work() const {
+  const std::lock_guard lock(mutex_);
+  return !all_settled();
+}
+
+std::optional<Frame> Exchange::next(std::size_t lane, SimTime now) const {
+  const std::lock_guard lock(mutex_);
+  const auto& waiting = lanes_.at(lane);
+  return waiting.empty() || waiting.front().since > now ? std::nullopt
+                                                        : std::optional(waiting.front().frame);
+}
+
+void Exchange::handed_over(std::size_t lane) {
+  const std::lock_guard lock(mutex_);
+  lanes_.at(lane).pop_front();
+  ++in_chip_;
+  if (std::exchange(sender_waits_, false)) {
+    sendable_.set();
+  }
+}
+
+void Exchange::settled(bool sent) {
+  const std::lock_guard lock(mutex_);
+  --in_chip_;
+  statistics_.unsent += sent ? 0 : 1;
+  if (all_settled()) {
+    settled_.notify_all();
+  }
+}
+
+void Exchange::deliver(const Frame& frame, Timestamp time) {
+  const std::lock_guard lock(mutex_);
+  const std::uint32_t tagged = tagged_id(frame);
+  if (std::any_of(filters_.begin(), filters_.end(),
+                  [tagged](const SocketCanFilter& filter) { return accepts(filter, tagged); })) {
+    enqueue(frame, time);
+  }
+}
+
+void Exchange::enqueue(const Frame& frame, Timestamp time) {
+  if (!closed_) {
+    queue_.put(frame, time);
+  }
+}
+
+void Exchange::tell(const News& news, Timestamp time) {
+  const std::lock_guard lock(mutex_);
+  state_ = news.state;
+  statistics_.overruns += news.overruns;
+  statistics_.bus_offs += news.bus_offs;
+  ++statistics_.error_frames;
+  if (error_frames_) {
+    enqueue(news.report, time);
+  }
+}
+
+void Exchange::count_outage() {
+  const std::lock_guard lock(mutex_);
+  ++statistics_.outages;
+}
+
+void Exchange::abandon() {
+  const std::lock_guard lock(mutex_);
+  abandon_locked();
+}
+
+void Exchange::abandon_locked() {
+  for (auto& lane : lanes_) {
+    statistics_.unsent += lane.size();
+    lane.clear();
+  }
+}
+
+void Exchange::end() {
+  const std::lock_guard lock(mutex_);
+  abandon_locked();
+  statistics_.unsent += std::exchange(in_chip_, 0);
+  state_ = BusState::absent;
+  ++statistics_.outages;
+  settled_.notify_all();
+}
+
+}  // namespace roio::sim

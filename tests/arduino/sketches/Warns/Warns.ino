@@ -1,3 +1,0 @@
-// Has a warning in it, which tests/arduino must notice.
-void setup() { int unused; }
-void loop() {}

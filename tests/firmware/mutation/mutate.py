@@ -1,0 +1,253 @@
+#!/usr/bin/env python3
+"""Takes one rule of the driver away, and sees tests/firmware/driver fail.
+
+  mutate.py --list          the names of the mutations
+  mutate.py NAME            compiles the tests against the driver without that rule, and runs them
+
+Exit status 0 when exactly the tests that the mutation names noticed (and perhaps others of their file),
+1 when one of them did not, 2 when the mutation does not fit the driver any more.
+In the environment: SOURCE, WORK (a folder of its own), CXX, LAUNCHER (may be empty), SIM (the simulator's
+library).
+"""
+
+import os
+import pathlib
+import re
+import shlex
+import subprocess
+import sys
+
+RECEIVE = "receive_order_test.cpp"
+TRANSMIT = "transmit_order_test.cpp"
+OTHER = "receive_test.cpp"
+BEGIN = "begin_test.cpp"
+GUARD = 240  # seconds; a driver without its rules may hang
+
+# name: (what the driver no longer does, text of one of its headers, what stands there instead,
+#        test file, tests that must fail)
+MUTATIONS = {
+    "rxb1_is_older_when_rxb0_was_freed_beside_it": (
+        "remember that RXB1, full when RXB0 was freed, has the older frame",
+        "rx1_is_older_ = first ? quick_ & QuickStatus::rx1 : 0;",
+        "rx1_is_older_ = 0;",
+        RECEIVE, ["ReceiveOrder.AFrameRollsOverWhileRxb0IsRead",
+                  "ReceiveOrder.EveryInterleavingWhilePolling",
+                  "ReceiveOrder.EveryInterleavingWithAnInterruptLine"]),
+    "rxb0_is_older_when_rxb1_was_freed": (
+        "forget that RXB1 was older once it has been read",
+        "rx1_is_older_ = first ? quick_ & QuickStatus::rx1 : 0;",
+        "rx1_is_older_ = quick_ & QuickStatus::rx1;",
+        RECEIVE, ["ReceiveOrder.EveryInterleavingWhilePolling",
+                  "ReceiveOrder.EveryInterleavingWithAQueue"]),
+    "rxb0_first_when_both_were_found_full": (
+        "read RXB0 before RXB1 when both were filled unseen",
+        "read_rx_buffer((quick_ & QuickStatus::rx0) != 0 && !rx1_is_older_, frame)",
+        "read_rx_buffer((quick_ & QuickStatus::rx1) == 0, frame)",
+        RECEIVE, ["ReceiveOrder.ReadsRxb0FirstWhenBothWereFilledUnseen",
+                  "ReceiveOrder.EveryInterleavingWhilePolling"]),
+    "older_rxb1_before_rxb0": (
+        "read RXB1 first when it is the older one",
+        "read_rx_buffer((quick_ & QuickStatus::rx0) != 0 && !rx1_is_older_, frame)",
+        "read_rx_buffer((quick_ & QuickStatus::rx0) != 0, frame)",
+        RECEIVE, ["ReceiveOrder.AFrameRollsOverWhileRxb0IsRead",
+                  "ReceiveOrder.EveryInterleavingWithAQueue"]),
+    "look_right_after": (
+        "look at the status right after a buffer was freed, with nothing in between",
+        "    transaction.restart();\n    looks =",
+        "    for (int i = 0; i < 30; ++i) {\n      transaction.restart();\n    }\n    looks =",
+        RECEIVE, ["ReceiveOrder.EveryInterleavingWhilePolling"]),
+    "a_line_that_is_low_is_no_frame_yet": (
+        "read the status before it believes the interrupt line",
+        "    look();\n    looked = true;\n  }\n  return quick_",
+        "    if (Port::has_interrupt_line) {\n      quick_ = QuickStatus::rx0;\n    } else {\n"
+        "      look();\n    }\n    looked = true;\n  }\n  return quick_",
+        RECEIVE, ["ReceiveOrder.AnInterruptLineThatIsStuckLowIsNoFrame"]),
+    "a_line_that_rises_early_tells_of_a_lost_chip": (
+        "look at the interrupt line before it trusts what it read",
+        "    trusted = !Port::has_interrupt_line || port_.interrupt_line_is_low();",
+        "    trusted = true;",
+        OTHER, ["ChipLoss.AFrameReadFromAChipThatWasResetIsDiscarded"]),
+    "an_idle_look_that_went_wrong_is_repeated": (
+        "look again when an idle look was nonsense",
+        "    if (--tries == 0) {",
+        "    if (true) {",
+        RECEIVE, ["ReceiveOrder.ASpikeInAnIdleLookIsForgiven"]),
+    "the_look_after_a_read_is_not_repeated": (
+        "take the look right after a read for the only one",
+        "    note(quick, 1);",
+        "    note(quick, 2);",
+        RECEIVE, ["ReceiveOrder.IsNotGuessedAfterALookThatWentWrong"]),
+    "all_ones_want_a_second_opinion": (
+        "tell a line stuck at 1 from a chip that is busy with everything",
+        "      (read_register(Register::canstat) & Control::mode_mask) == Control::mode_mask) {",
+        "      false) {",
+        OTHER, ["ChipLoss.ALineStuckHighIsNotTakenForAllBuffersInUse"]),
+    "nothing_is_cleared_that_was_not_read": (
+        "leave the chip's receive flags alone",
+        "  return trusted;",
+        "  modify_register(Register::canintf, first ? 1 : 2, 0);\n"
+        "  return trusted;",
+        RECEIVE, ["ReceiveOrder.EveryInterleavingWhilePolling"]),
+    "the_second_frame_goes_behind_the_first": (
+        "send a second frame from the buffer behind the first",
+        "first_buffer) ? second_buffer : first_buffer;",
+        "first_buffer) ? urgent_buffer : first_buffer;",
+        TRANSMIT, ["TransmitOrderOf/TwoPlaces.ManyInARow"]),
+    "a_buffer_for_urgent_frames": (
+        "keep buffer 2 for urgent frames",
+        "      return no_buffer;\n    }\n    return is_pending(pending, first",
+        "      return is_pending(pending, urgent_buffer) ? no_buffer : urgent_buffer;\n    }\n"
+        "    return is_pending(pending, first",
+        TRANSMIT, ["TransmitOrderOf/TwoPlaces.ManyInARow"]),
+    "urgent_frames_enter_the_queue_ahead": (
+        "queue an urgent frame ahead of the normal ones",
+        "  if (is_urgent(frame)) {\n    while (place > 0) {",
+        "  if (false) {\n    while (place > 0) {",
+        TRANSMIT, ["TransmitOrderOf/TwoPlaces.UrgentFramesKeepTheirOrderAmongThemselves"]),
+    "urgent_frames_keep_their_order_in_the_queue": (
+        "queue an urgent frame behind the urgent ones",
+        "      if (is_urgent(tx_queue_[ahead].frame)) {\n        break;\n      }\n",
+        "",
+        TRANSMIT, ["TransmitOrderOf/TwoPlaces.UrgentFramesKeepTheirOrderAmongThemselves"]),
+    "a_frame_waits_behind_the_queue": (
+        "let a frame wait while others of its priority are in the queue",
+        "tx_queue_.empty() || (is_urgent(frame) && !is_urgent(tx_queue_.front().frame));",
+        "true;",
+        TRANSMIT, ["All/TransmitTrouble.EachFrameIsSentOnceAndReportedTruly/none"]),
+    "a_pending_buffer_is_left_alone": (
+        "leave a buffer alone that the chip is still to send",
+        "    if (is_pending(pending, second_buffer)) {",
+        "  if (false) {",
+        TRANSMIT, ["TransmitOrderOf/TwoPlaces.ManyInARow"]),
+    "a_place_once_passed_is_not_taken_again": (
+        "back to back, wait for both buffers after the last place",
+        "place_ == places || is_pending(pending, buffer)",
+        "is_pending(pending, buffer)",
+        TRANSMIT, ["TransmitOrderOf/SixPlaces.ManyInARow"]),
+    "each_pair_behind_the_pair_before": (
+        "back to back, send each pair with a lower priority",
+        "static_cast<uint8_t>(top - (place_ >> 1));",
+        "top;",
+        TRANSMIT, ["All/BackToBackTrouble.EachFrameIsSentOnceAndReportedTruly/contention"]),
+    "what_became_of_it_is_read": (
+        "read what became of a frame when it was taken back",
+        "  if (!requests_.aborting() && !one_shot) {\n    return TxOutcome::sent;\n  }",
+        "  if (true) {\n    return TxOutcome::sent;\n  }",
+        TRANSMIT, ["Abort.TakesBackWhatHasNotBegun",
+                   "All/TransmitTrouble.EachFrameIsSentOnceAndReportedTruly/aborts"]),
+    "a_dlc_above_8_is_8_bytes": (
+        "take a DLC of 9 to 15 as 8",
+        "    frame.limit_length();",
+        "",
+        OTHER, ["Receive.ADlcAboveEightIsEightBytesAndNoMore"]),
+    "foreign_frames_are_dropped": (
+        "drop remote and standard frames",
+        "Traits::all_kinds || Traits::wants(frame);",
+        "true;",
+        OTHER, ["Receive.RemoteAndStandardFramesAreCountedAndDropped"]),
+    "overflows_are_looked_for": (
+        "look for an overflow after both buffers were full",
+        "    calls_ |= mcp2515::calls_between_checks;",
+        "",
+        OTHER, ["Overflow.EachLossThatIsServedInBetweenIsCounted"]),
+    "overflow_flags_are_cleared": (
+        "make the overflow flags ready for the next loss",
+        "    write_register(Register::eflg, 0);  // no other bit can be written",
+        "",
+        OTHER, ["Overflow.IsToldHoweverTheChipFlagsIt"]),
+    "the_state_of_the_bus_is_looked_at": (
+        "look at the chip every so many calls",
+        "calls_ >= mcp2515::calls_between_checks && (quick_ == 0",
+        "false && (quick_ == 0",
+        OTHER, ["BusState.IsToldWhilePolling", "ChipLoss.ASilentLineIsNotBelievedForEver"]),
+    "a_reset_shows_in_the_status": (
+        "expect its own flags in each status",
+        "pending_))) == QuickStatus::txif;",
+        "pending_))) != 1;",
+        OTHER, ["ChipLoss.AResetIsNoticedWhilePolling",
+                "ChipLoss.AFrameReadFromACableThatFellOffIsDiscarded"]),
+    "what_was_written_is_read_back": (
+        "read back what it wrote",
+        "  right = right && exchange_setup(config) == 0;",
+        "  exchange_setup(config);",
+        BEGIN, ["Begin.NoticesAWriteThatDidNotArrive"]),
+    "the_oscillator_is_waited_for": (
+        "wait for a chip that starts slowly",
+        "  } while (--pauses != 0);",
+        "  } while (false);",
+        BEGIN, ["Begin.WaitsForAChipThatStartsSlowly"]),
+    "the_mode_is_confirmed": (
+        "see the chip enter its mode",
+        "    if (((read_register(Register::canstat) ^ control) & Control::mode_mask) == 0) {",
+        "    if (true) {",
+        BEGIN, ["Begin.OnABusThatIsNeverIdleSaysSoInTime"]),
+}
+
+
+def fail(status, text):
+    print(f"mutate: {text}", file=sys.stderr)
+    sys.exit(status)
+
+
+def write_mutated_headers(source, work, old, new):
+    headers = source / "firmware/mcp2515/include/roio"
+    mutated = work / "include/roio"
+    mutated.mkdir(parents=True, exist_ok=True)
+    found = 0
+    for header in headers.glob("*.hpp"):
+        text = header.read_text()
+        found += text.count(old)
+        (mutated / header.name).write_text(text.replace(old, new))
+    if found != 1:
+        fail(2, f"expected once in {headers}, found {found} times:\n{old}")
+
+
+def compile_tests(source, work, test_file):
+    program = work / "mutated_test"
+    include = [work / "include", source / "libroio/core/include", source / "sim/include",
+               source / "tests/support", source / "tests/firmware/driver"]
+    flags = ["-std=c++20", "-O1", *(f"-I{folder}" for folder in include)]
+    launcher = shlex.split(os.environ.get("LAUNCHER", ""))
+    compiled = work / "mutated_test.o"
+    subprocess.run([*launcher, os.environ["CXX"], *flags, "-c", source / "tests/firmware/driver" / test_file,
+                    "-o", compiled], check=True)
+    subprocess.run([os.environ["CXX"], compiled, *os.environ["SIM"].split(":"), "-lgtest", "-lgtest_main",
+                    "-lpthread", "-o", program], check=True)
+    return program
+
+
+def failing_tests(program, tests):
+    """Runs the tests that have to fail, each by itself: a mutated driver may hang or crash."""
+    failed = []
+    for test in tests:
+        try:
+            done = subprocess.run([program, f"--gtest_filter={test}"], capture_output=True, text=True,
+                                  timeout=GUARD)
+        except subprocess.TimeoutExpired:
+            failed.append(test)
+            continue
+        if not re.search(r"\[ +RUN +\] " + re.escape(test), done.stdout):
+            fail(2, f"there is no test {test}")
+        if done.returncode != 0:
+            failed.append(test)
+    return failed
+
+
+def main():
+    if sys.argv[1:] == ["--list"]:
+        print(";".join(MUTATIONS), end="")
+        return 0
+    if len(sys.argv) != 2 or sys.argv[1] not in MUTATIONS:
+        fail(2, "expected --list or the name of a mutation")
+    what, old, new, test_file, tests = MUTATIONS[sys.argv[1]]
+    source, work = pathlib.Path(os.environ["SOURCE"]), pathlib.Path(os.environ["WORK"])
+    write_mutated_headers(source, work, old, new)
+    program = compile_tests(source, work, test_file)
+    failed = failing_tests(program, tests)
+    for test in tests:
+        print(f"a driver that does not {what}: {test} {'fails' if test in failed else 'DOES NOT NOTICE'}")
+    return 0 if failed == tests else 1
+
+
+if __name__ == "__main__":
+    sys.exit(main())

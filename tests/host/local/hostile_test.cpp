@@ -1,0 +1,202 @@
+// Clients that misbehave: the others lose nothing by it.
+#include <gtest/gtest.h>
+#include <poll.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <roio.hpp>
+#include <thread>
+
+#include "local/place.hpp"
+#include "local/protocol.hpp"
+#include "process.hpp"
+
+namespace roio::local {
+namespace {
+
+using namespace std::chrono_literals;
+using test::Peer;
+using test::unique_name;
+
+constexpr Frame some_frame{0x1004A00A, FrameKind::extended, 1, {7}};
+
+void send_raw(const UniqueFd& socket, const Buffer& bytes) {
+  ASSERT_EQ(::send(socket.get(), bytes.data(), bytes.size(), MSG_NOSIGNAL),
+            static_cast<ssize_t>(bytes.size()));
+}
+
+// Whether the hub hangs up within a while.
+bool is_cut_off(const UniqueFd& socket) {
+  std::array<std::uint8_t, 4096> bytes{};
+  for (;;) {
+    pollfd entry{socket.get(), POLLIN, 0};
+    if (::poll(&entry, 1, 30'000) <= 0) {
+      return false;
+    }
+    if (::recv(socket.get(), bytes.data(), bytes.size(), 0) <= 0) {
+      return true;
+    }
+  }
+}
+
+Buffer hello() {
+  Buffer bytes;
+  append_record(bytes, Hello{magic, protocol_version, 0, 4711, 0, 0});
+  return bytes;
+}
+
+class HostileClient : public ::testing::Test {
+ protected:
+  // After whatever a client did, two others still talk.
+  void expect_others_unharmed() {
+    ASSERT_EQ(sender_->send(some_frame, 10s), Result::ok);
+    Received received{};
+    ASSERT_EQ(receiver_->receive(received, 10s), Result::ok);
+    EXPECT_EQ(received.frame.id, some_frame.id);
+    EXPECT_EQ(received.lost_before, 0U);
+    EXPECT_EQ(receiver_->statistics().outages, 0U);
+  }
+
+  std::string name_ = unique_name();
+  std::unique_ptr<Bus> receiver_ = open("local:" + name_);
+  std::unique_ptr<Bus> sender_ = open("local:" + name_, {.send_only = true});
+  Place place_{name_};
+  UniqueFd socket_ = place_.connect();
+};
+
+TEST_F(HostileClient, GarbageInsteadOfAGreetingIsCutOff) {
+  send_raw(socket_, Buffer(300, 0xA5));
+  EXPECT_TRUE(is_cut_off(socket_));
+  expect_others_unharmed();
+}
+
+TEST_F(HostileClient, AFrameBeforeTheGreetingIsCutOff) {
+  Buffer bytes;
+  append_record(bytes, OfferedFrame{1, to_wire(some_frame)});
+  send_raw(socket_, bytes);
+  EXPECT_TRUE(is_cut_off(socket_));
+  Received received{};
+  EXPECT_EQ(receiver_->receive(received, no_wait), Result::timeout) << "and not delivered";
+  expect_others_unharmed();
+}
+
+TEST_F(HostileClient, GarbageAfterTheGreetingIsCutOff) {
+  Buffer bytes = hello();
+  bytes.insert(bytes.end(), 50, 0xFF);
+  send_raw(socket_, bytes);
+  EXPECT_TRUE(is_cut_off(socket_));
+  expect_others_unharmed();
+}
+
+TEST_F(HostileClient, HalfARecordAndThenNothing) {
+  Buffer bytes = hello();
+  append_record(bytes, OfferedFrame{1, to_wire(some_frame)});
+  bytes.resize(bytes.size() - 5);
+  send_raw(socket_, bytes);
+  expect_others_unharmed();
+}
+
+TEST_F(HostileClient, HalfARecordAndThenGone) {
+  Buffer bytes = hello();
+  append_record(bytes, OfferedFrame{1, to_wire(some_frame)});
+  bytes.resize(bytes.size() - 5);
+  send_raw(socket_, bytes);
+  socket_.reset();
+  expect_others_unharmed();
+}
+
+TEST_F(HostileClient, AFrameThatNoBusCarriesIsCutOff) {
+  Buffer bytes = hello();
+  OfferedFrame offered{1, to_wire(some_frame)};
+  offered.frame.length = 9;
+  append_record(bytes, offered);
+  send_raw(socket_, bytes);
+  EXPECT_TRUE(is_cut_off(socket_));
+  expect_others_unharmed();
+}
+
+TEST_F(HostileClient, ConsumingMoreThanWasDeliveredIsCutOff) {
+  Buffer bytes = hello();
+  append_record(bytes, Consumed{1});
+  send_raw(socket_, bytes);
+  EXPECT_TRUE(is_cut_off(socket_));
+  expect_others_unharmed();
+}
+
+TEST_F(HostileClient, TheHubsOwnRecordsAreCutOff) {
+  Buffer bytes = hello();
+  append_record(bytes, Done{{1, 1}});
+  send_raw(socket_, bytes);
+  EXPECT_TRUE(is_cut_off(socket_));
+  expect_others_unharmed();
+}
+
+TEST_F(HostileClient, AnotherVersionIsToldSo) {
+  Buffer bytes;
+  append_record(bytes, Hello{magic, protocol_version + 1, 0, 4711, 0, 0});
+  send_raw(socket_, bytes);
+  pollfd entry{socket_.get(), POLLIN, 0};
+  ASSERT_EQ(::poll(&entry, 1, 30'000), 1);
+  std::array<std::uint8_t, 64> answer{};
+  const ssize_t got = ::recv(socket_.get(), answer.data(), answer.size(), 0);
+  ASSERT_GT(got, 0);
+  std::span<const std::uint8_t> rest = std::span(answer).first(static_cast<std::size_t>(got));
+  Record record{};
+  ASSERT_EQ(take_record(rest, record), Split::record);
+  ASSERT_EQ(record.type, RecordType::refused);
+  EXPECT_EQ(record.as<Refused>().errc, static_cast<std::uint32_t>(Errc::version_mismatch));
+}
+
+// One process neither reads nor writes, another is stopped altogether; a third keeps all it gets.
+TEST_F(HostileClient, NeverReadingCostsTheOthersNothing) {
+  Peer holder({"hold", "local:" + name_});
+  ASSERT_EQ(holder.line(), "open");
+  Peer stopped({"hold", "local:" + name_});
+  ASSERT_EQ(stopped.line(), "open");
+  stopped.signal(SIGSTOP);
+  constexpr std::uint64_t count = 150'000;  // more than a queue holds
+  std::jthread reader([this] {
+    std::array<Received, 256> batch;
+    std::uint64_t got = 0;
+    while (got < count) {
+      const Transfer transfer = receiver_->receive(batch, 30s);
+      ASSERT_EQ(transfer.result, Result::ok) << "after " << got;
+      for (std::size_t i = 0; i < transfer.count; ++i) {
+        ASSERT_EQ(batch.at(i).lost_before, 0U);
+      }
+      got += transfer.count;
+    }
+  });
+  const std::vector<Frame> lot(1000, some_frame);
+  for (std::uint64_t sent = 0; sent < count; sent += lot.size()) {
+    ASSERT_EQ(sender_->send(lot, 30s).result, Result::ok) << "after " << sent;
+  }
+  reader.join();
+  stopped.signal(SIGCONT);
+}
+
+// received + dropped = sent, at any moment and for a reader that starts too late.
+TEST_F(HostileClient, WhatAnIdleReaderLosesIsCountedExactly) {
+  constexpr std::uint64_t count = 100'000;
+  const std::vector<Frame> lot(1000, some_frame);
+  for (std::uint64_t sent = 0; sent < count; sent += lot.size()) {
+    ASSERT_EQ(sender_->send(lot, 30s).result, Result::ok) << "after " << sent;
+  }
+  sender_->close();  // all that was sent has left the hub, or been dropped by it
+  std::array<Received, 256> batch;
+  std::uint64_t received = 0;
+  for (;;) {
+    const Transfer transfer = receiver_->receive(batch, 1s);
+    if (transfer.result != Result::ok) {
+      break;
+    }
+    received += transfer.count;
+  }
+  const Statistics statistics = receiver_->statistics();
+  EXPECT_EQ(received, 65'536U) << "as many as the queue holds";
+  EXPECT_EQ(statistics.received, received);
+  EXPECT_EQ(statistics.received + statistics.dropped, count);
+}
+
+}  // namespace
+}  // namespace roio::local
