@@ -16,7 +16,7 @@ struct ArduinoOptions {
   static constexpr uint8_t tx_queue = 0;
   /// Messages fetched ahead by poll(); the chip holds two, and the node one; 0..127, 13 bytes each.
   static constexpr uint8_t rx_queue = 0;
-  /// For chips before revision B2, see docs/driver.md.
+  /// For chips before revision B2, see docs/internals/driver.md.
   static constexpr bool only_buffer_0 = false;
   /// Whether errors on the bus are counted, and the chip is looked at more closely.
   static constexpr bool diagnoses = false;
