@@ -3,7 +3,7 @@
 
   Wiring, flashing and use: docs/bridge.md. The PC's side: `roio-cli bridge`, or any program that
   opens serial:/dev/ttyACM0; or one that speaks SLCAN, such as slcand. What goes over the line:
-  docs/serial-protocol.md.
+  docs/internals/serial-protocol.md.
 
   Parts
     line_uart.h, line_usb.h   bytes to and from the PC

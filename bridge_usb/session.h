@@ -1,4 +1,4 @@
-/// Session: the bridge's side of docs/serial-protocol.md.
+/// Session: the bridge's side of docs/internals/serial-protocol.md.
 ///
 /// Up: frames are numbered as they come; one that finds no room is left out, and its number shows
 /// that. Down: frames are taken in order, once. Answers that find no room wait for it, one of each

@@ -1,4 +1,4 @@
-/// Tally: all that the bridge counts, in the order of COUNTERS in docs/serial-protocol.md.
+/// Tally: all that the bridge counts, in the order of COUNTERS in docs/internals/serial-protocol.md.
 #ifndef ROIO_BRIDGE_TALLY_H
 #define ROIO_BRIDGE_TALLY_H
 

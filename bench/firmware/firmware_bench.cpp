@@ -1,5 +1,5 @@
 // What a node costs an Uno in time, from real images on simulated boards: the same figures in every
-// run, whatever else the machine does. Prints tables as docs/performance.md has them; exits with 1
+// run, whatever else the machine does. Prints tables as bench/figures.md has them; exits with 1
 // when a message was lost.
 //
 //   firmware_bench [SIMULATED_SECONDS]   on the saturated bus of 1 Mbit/s; others: a sixth of it

@@ -2,7 +2,7 @@
 """What a node costs an Uno in flash and RAM: usage: sizes.py IMAGES
 
 IMAGES is the folder with the images of a board, by tests/firmware/load/images.cmake and the examples.
-Prints tables as docs/performance.md has them: each sketch beyond one that does nothing, and where Echo's
+Prints tables as bench/figures.md has them: each sketch beyond one that does nothing, and where Echo's
 bytes are. Needs avr-size and avr-nm.
 """
 import pathlib

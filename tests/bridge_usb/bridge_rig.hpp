@@ -38,7 +38,7 @@ inline std::filesystem::path bridge_image(sim::BoardKind kind) {
   return std::filesystem::path(ROIO_IMAGES_DIR) / folder / "bridge_usb.elf";
 }
 
-/// Written from docs/serial-protocol.md: the body of a control record.
+/// Written from docs/internals/serial-protocol.md: the body of a control record.
 inline Bytes body_of(serial::Down operation, std::uint8_t sequence, const Bytes& payload = {}) {
   Bytes body{static_cast<std::uint8_t>(operation), sequence};
   body.insert(body.end(), payload.begin(), payload.end());

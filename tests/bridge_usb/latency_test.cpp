@@ -1,7 +1,7 @@
 // How long a frame takes from the PC to a node, and the node's answer back, against the bits that
 // have to pass one after the other: record, frame, frame, record. In simulated time. The goal is
 // 1.25 times the bits for half of the trips; the limits below are what is reached, with little to
-// spare (docs/performance.md).
+// spare (bench/figures.md).
 #include <algorithm>
 #include <cstdio>
 #include <roio/frame_length.hpp>

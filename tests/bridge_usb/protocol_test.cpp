@@ -1,4 +1,4 @@
-// The bridge's image speaks docs/serial-protocol.md, record by record.
+// The bridge's image speaks docs/internals/serial-protocol.md, record by record.
 #include "bridge_rig.hpp"
 
 namespace roio {

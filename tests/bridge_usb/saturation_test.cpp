@@ -32,7 +32,8 @@ bool is_numbered(const Frame& frame, std::uint32_t number, int length, std::uint
          std::equal(frame.data, frame.data + length, expected.data);
 }
 
-/// Keeps the window full, and takes what RESULTS says, as docs/serial-protocol.md "Down" wants it.
+/// Keeps the window full, and takes what RESULTS says, as docs/internals/serial-protocol.md "Down"
+/// wants it.
 class Sender {
  public:
   Sender(BridgeRig& rig, int length) : rig_(rig), length_(length) {}

@@ -2,18 +2,22 @@
 ///
 ///   #include <Roio.h>
 ///
+///   constexpr uint32_t crystal = 16000000;  // as printed on the module's crystal
+///   constexpr uint32_t bitrate = 500000;
+///   constexpr Roio::Address own = {0, 2};
+///
 ///   RoioOn<10> roio;  // chip select on pin 10; or RoioOn<10, 2> with INT on pin 2
 ///
 ///   void loop() {
-///     if (!roio.running() && roio.begin(500, 2, 0) != Roio::Status::ok) {
+///     if (!roio.running() && roio.begin<crystal, bitrate>(own) != Roio::Status::ok) {
 ///       return;  // no chip yet: try again
 ///     }
 ///     Roio::Message message;
 ///     if (roio.receive(message) == Roio::Status::ok) { ... }
 ///   }
 ///
-/// Roio roio(10) is the same as in the library of 2014, with its calls. All names that a sketch
-/// needs are members of class Roio: Roio::Message, Roio::Status::ok, Roio::Address{0, 2}.
+/// Roio roio(10) is the same, with the calls of the first Roio library (2014) besides. All names that
+/// a sketch needs are members of class Roio: Roio::Message, Roio::Status::ok, Roio::Address{0, 2}.
 /// The reference is roio/arduino_node.hpp, roio/arduino_message.hpp and roio/arduino_classic.hpp.
 #ifndef ROIO_H
 #define ROIO_H

@@ -125,7 +125,7 @@ class CheckedBy16 {
 
 // --- counting ------------------------------------------------------------------------------------
 
-/// Counts frames as docs/serial-protocol.md "Up" has it.
+/// Counts frames as docs/internals/serial-protocol.md "Up" has it.
 class Count {
  public:
   void take(const Body& body) {

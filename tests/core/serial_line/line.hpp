@@ -10,7 +10,7 @@
 
 namespace roio::test {
 
-/// What a line does to bytes; docs/serial-protocol.md counts on none of it to be rare.
+/// What a line does to bytes; docs/internals/serial-protocol.md counts on none of it to be rare.
 enum class Fault : std::uint8_t {
   flipped,         ///< 1..3 bits of a byte.
   replaced,        ///< A byte by another.

@@ -1,5 +1,5 @@
 // How long receive() and send() take on an Uno, held to what was measured when this was written,
-// with a few cycles to spare: a change that makes them slower shows. docs/performance.md has the
+// with a few cycles to spare: a change that makes them slower shows. bench/figures.md has the
 // goals, too.
 #include "call_time.hpp"
 

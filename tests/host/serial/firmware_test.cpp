@@ -241,7 +241,7 @@ TEST(SerialFirmware, FillsABusOf500kAt1M) {
   EXPECT_EQ(line.session.down().sent, source.offered);
   EXPECT_EQ(line.session.down().resent, 0U);
   std::cout << "load of the bus: " << load << '\n';
-  EXPECT_GT(load, 0.7) << "more than the processor can do (docs/performance.md)";
+  EXPECT_GT(load, 0.7) << "more than the processor can do (bench/figures.md)";
 }
 
 TEST(SerialFirmware, BothWaysAtOnceNothingIsLost) {

@@ -1,6 +1,6 @@
-/// ScriptedBridge: the bridge's side of docs/serial-protocol.md, written from that text and from
-/// nothing else: no firmware, no controller; a test says what is on its bus, and may break any
-/// rule.
+/// ScriptedBridge: the bridge's side of docs/internals/serial-protocol.md, written from that text
+/// and from nothing else: no firmware, no controller; a test says what is on its bus, and may break
+/// any rule.
 #ifndef ROIO_TESTS_SERIAL_SCRIPTED_BRIDGE_HPP
 #define ROIO_TESTS_SERIAL_SCRIPTED_BRIDGE_HPP
 

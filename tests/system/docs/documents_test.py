@@ -1,9 +1,10 @@
-"""What README.md and docs/ say, against what there is.
+"""What the documents say, against what there is.
 
 Before a block of commands, a comment may say how it is tested:
-  <!-- first terminal -->, <!-- second terminal -->  the first stays while the second runs
+  <!-- first terminal -->, <!-- second terminal -->  the first stays while the second runs (README.md)
   <!-- not run here: WHY -->                         needs hardware, or is run by another test
-Every other block of commands in README.md and docs/library.md is refused, so that none goes untested.
+Every other block of commands in the documents for users is refused, so that none goes untested; but in
+those whose console blocks tests/tools/cli/docs_test.py runs.
 """
 
 import os
@@ -16,7 +17,11 @@ import unittest
 
 SOURCE = pathlib.Path(os.environ["ROIO_SOURCE"])
 TOOLS = os.environ["ROIO_TOOLS"]
-DOCUMENTS = [SOURCE / "README.md", SOURCE / "CHANGELOG.md", *sorted(SOURCE.glob("docs/*.md"))]
+FOR_USERS = sorted(SOURCE.glob("docs/*.md"))
+FOR_BUILDERS = [*sorted(SOURCE.glob("docs/internals/*.md")), SOURCE / "bench/figures.md"]
+DOCUMENTS = [*sorted(SOURCE.glob("*.md")), *FOR_USERS, *FOR_BUILDERS]
+# Their console blocks are run, by tests/tools/cli/docs_test.py.
+RUN_AS_SESSIONS = [SOURCE / "docs" / name for name in ("cli.md", "python.md", "recipes.md")]
 GUARD = 60  # seconds; against hanging only
 
 
@@ -32,7 +37,7 @@ def anchors(text):
 
 def command_blocks(path):
     """Each block of commands, with the comment above it."""
-    pattern = r"(?ms)^(?:<!-- ([^\n]*) -->\n)?```(?:sh|console)\n(.*?)^```$"
+    pattern = r"(?ms)^(?:<!-- ([^\n]*) -->\n)?```(?:sh|console|powershell)\n(.*?)^```$"
     return re.findall(pattern, path.read_text())
 
 
@@ -52,7 +57,7 @@ class Links(unittest.TestCase):
 
 class Lists(unittest.TestCase):
     def test_dependencies_are_those_that_setup_installs(self):
-        document = (SOURCE / "docs/dependencies.md").read_text()
+        document = (SOURCE / "docs/internals/dependencies.md").read_text()
         sections = re.split(r"(?m)^## .*`scripts/setup (\w+)`$", document)[1:]
         before = []
         for purpose, section in zip(sections[::2], sections[1::2]):
@@ -71,26 +76,48 @@ class Lists(unittest.TestCase):
         first = re.search(r"(?m)^## (\S+?),? ", (SOURCE / "CHANGELOG.md").read_text())[1]
         self.assertEqual(first, version)
 
-    def test_readme_leads_to_every_document(self):
+    def test_readme_leads_to_every_document_for_users(self):
         readme = (SOURCE / "README.md").read_text()
-        for document in SOURCE.glob("docs/*.md"):
+        for document in FOR_USERS:
             self.assertIn(f"](docs/{document.name})", readme)
+
+    def test_contributing_leads_to_every_document_for_builders(self):
+        contributing = (SOURCE / "CONTRIBUTING.md").read_text()
+        for document in FOR_BUILDERS:
+            self.assertIn(f"]({document.relative_to(SOURCE)})", contributing)
+
+
+class Words(unittest.TestCase):
+    def test_hub_is_not_a_word_for_users(self):
+        for document in [SOURCE / "README.md", *FOR_USERS]:
+            with self.subTest(document=document.name):
+                self.assertNotRegex(without_blocks(document.read_text()), r"(?i)\bhubs?\b")
+
+    def test_sources_name_documents_that_exist(self):
+        folders = ("libroio", "firmware", "bridge_usb", "sim", "tools", "tests", "bench", "examples", "cmake", "scripts")
+        for file in [*(file for folder in folders for file in SOURCE.glob(f"{folder}/**/*")),
+                     SOURCE / "CMakeLists.txt"]:
+            if not file.is_file() or file.suffix in (".pyc", ".elf"):
+                continue
+            for name in re.findall(r"\b(?:docs|bench)/[\w/-]+\.md\b", file.read_text(errors="replace")):
+                with self.subTest(file=str(file.relative_to(SOURCE)), name=name):
+                    self.assertTrue((SOURCE / name).exists())
 
 
 class Commands(unittest.TestCase):
     def test_every_block_is_run_or_says_why_not(self):
-        for name in ("README.md", "docs/library.md"):
-            for how, block in command_blocks(SOURCE / name):
-                self.assertRegex(how, r"^(first terminal|second terminal|not run here: .+)$", block)
+        for document in [SOURCE / "README.md", SOURCE / "CONTRIBUTING.md", *FOR_USERS]:
+            for how, block in command_blocks(document):
+                with self.subTest(document=document.name):
+                    if document not in RUN_AS_SESSIONS:
+                        self.assertRegex(how, r"^(first terminal|second terminal|not run here: .+)$", block)
 
     def test_two_terminals(self):
         blocks = {how: block.splitlines() for how, block in command_blocks(SOURCE / "README.md")}
         listen, *expected = blocks["first terminal"]
         with tempfile.TemporaryDirectory() as folder:
-            os.mkdir(f"{folder}/build")
-            os.symlink(TOOLS, f"{folder}/build/bin")
             shell = {"cwd": folder, "text": True, "stdout": subprocess.PIPE, "stderr": subprocess.PIPE,
-                     "env": dict(os.environ, ROIO_RUNTIME_DIR=folder)}
+                     "env": dict(os.environ, ROIO_RUNTIME_DIR=folder, PATH=TOOLS + ":" + os.environ["PATH"])}
             # -v says when it listens; exec, so that the signal reaches it and no shell.
             command = "exec " + listen.removeprefix("$ ").replace(" dump ", " dump -v ")
             with subprocess.Popen(["timeout", str(GUARD), "bash", "-c", command], **shell) as first:

@@ -1,9 +1,10 @@
 #!/usr/bin/env python3
-"""Runs the console examples of a document, and compares what they print with what it says.
+"""Runs the console examples of documents, and compares what they print with what the documents say.
 
 A block is one bash session: "$ " begins a command, "> " goes on with it, the rest is output. Commands
 that end with "&" run until they end by themselves; what they print stands at the block's end, in their
-order. Blocks that name vcan0 need real SocketCAN and are run with ROIO_CLI_ON_SOCKETCAN, the others
+order. A block after <!-- file NAME --> is a file that the blocks after it find. Blocks that name vcan0,
+themselves or in a file that they name, need real SocketCAN and are run with ROIO_CLI_ON_SOCKETCAN, the others
 without. For blocks that name /dev/ttyACM0 there is a bridge on a simulated board, if there is ROIO_SIM;
 the terminal's path is longer, so with them the number of spaces does not count.
 """
@@ -12,6 +13,8 @@ import os
 import re
 import stat
 import subprocess
+import sys
+import tempfile
 
 from driver import CLI, GUARD, ON_SOCKETCAN, CliTest, main, masked
 
@@ -19,11 +22,12 @@ WITH_BRIDGE = "ROIO_SIM" in os.environ
 if WITH_BRIDGE:
     from bridge_test import ATTACH_TRIES, NO_ANSWER, start_bridge, without_repeats
 
-DOCUMENT = os.environ["ROIO_CLI_DOCUMENT"]
+DOCUMENTS = os.environ["ROIO_CLI_DOCUMENTS"].split(":")
 PORT = "/dev/ttyACM0"
 
-# Stands for roio-cli in the background: says in a file when it listens.
+# Stands for roio-cli in the background: says in a file when a dump listens.
 LISTENER = r"""#!/bin/bash
+[ "$1" = dump ] || exec "$ROIO_CLI" "$@"
 shift
 exec 3>&1
 "$ROIO_CLI" dump -v "$@" 2>&1 >&3 3>&- | while IFS= read -r line; do
@@ -37,13 +41,20 @@ exit "${PIPESTATUS[0]}"
 """
 
 
-def console_blocks():
-    with open(DOCUMENT) as file:
+def blocks_of(document):
+    """Each console block with its line, its text, and the files that stand above it."""
+    with open(document) as file:
         text = file.read()
-    for match in re.finditer(r"(?ms)^```console\n(.*?)^```$", text):
-        line = text[: match.start()].count("\n") + 1
-        if ("vcan0" in match[1]) == ON_SOCKETCAN:
-            yield line, match[1]
+    files = {}
+    for match in re.finditer(r"(?ms)^(?:<!-- file (\S+) -->\n)?```(\w+)\n(.*?)^```$", text):
+        name, language, block = match.groups()
+        if name:
+            files[name] = block
+        elif language == "console":
+            line = text[: match.start()].count("\n") + 1
+            whole = block + "".join(files[name] for name in files if name in block)
+            if ("vcan0" in whole) == ON_SOCKETCAN:
+                yield line, block, dict(files)
 
 
 def split(block):
@@ -85,7 +96,8 @@ def session(commands):
             script.append(f'attach "{command[:-1].strip()}" "$OUT.{background}"')
         elif command.endswith("&"):
             background += 1
-            script.append(command.replace("roio-cli", "listener", 1)[:-1] + f'>"$OUT.{background}" 2>&1 &')
+            # Output that the command sends elsewhere stays there.
+            script.append(f'(PATH="$LISTENERS:$PATH"; {command[:-1]}) >"$OUT.{background}" 2>&1 &')
             script.append('until [ -e "$LISTENING" ]; do sleep 0.01; done; rm "$LISTENING"')
         else:
             script.append(command)
@@ -94,29 +106,39 @@ def session(commands):
     return "\n".join(script)
 
 
+def write_program(path, text):
+    with open(path, "w") as file:
+        file.write(text)
+        os.fchmod(file.fileno(), stat.S_IRWXU)
+
+
 class DocumentTest(CliTest):
-    def test_examples_print_what_the_document_says(self):
-        programs = self.path("bin")
-        os.mkdir(programs)
+    def test_examples_print_what_the_documents_say(self):
+        programs, listeners = self.path("bin"), self.path("listeners")
+        for folder in (programs, listeners):
+            os.mkdir(folder)
         os.symlink(CLI, os.path.join(programs, "roio-cli"))
-        with open(os.path.join(programs, "listener"), "w") as file:
-            file.write(LISTENER)
-            os.fchmod(file.fileno(), stat.S_IRWXU)
-        env = dict(os.environ, PATH=programs + ":" + os.environ["PATH"],
+        write_program(os.path.join(programs, "python3"), f'#!/bin/sh\nexec {sys.executable} "$@"\n')
+        write_program(os.path.join(listeners, "roio-cli"), LISTENER)
+        env = dict(os.environ, PATH=programs + ":" + os.environ["PATH"], LISTENERS=listeners,
                    LISTENING=self.path("listening"), OUT=self.path("out"))
-        blocks = list(console_blocks())
-        self.assertNotEqual(blocks, [])
-        for line, block in blocks:
-            with self.subTest(line=line):
-                if PORT not in block:
-                    self.check(block, env)
-                elif WITH_BRIDGE:
-                    self.check_with_bridge(block, env)
+        for document in DOCUMENTS:
+            for line, block, files in blocks_of(document):
+                with self.subTest(document=os.path.basename(document), line=line), \
+                        tempfile.TemporaryDirectory() as folder:
+                    for name, text in files.items():
+                        with open(os.path.join(folder, name), "w") as file:
+                            file.write(text)
+                    self.folder = folder
+                    if PORT not in block:
+                        self.check(block, env)
+                    elif WITH_BRIDGE:
+                        self.check_with_bridge(block, env)
 
     def printed(self, commands, env):
         done = subprocess.run(
             ["bash", "-c", session(commands)], stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
-            text=True, timeout=GUARD, env=env,
+            text=True, timeout=GUARD, env=env, cwd=self.folder,
         )
         return masked(done.stdout)
 

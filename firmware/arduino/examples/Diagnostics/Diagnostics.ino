@@ -11,7 +11,7 @@
     CS                10     10          10
   Between CANH and CANL belong 120 ohms at each end of the bus: 60 ohms in all, with power off.
 
-  Address 0.250, 500 kbit/s, a 16 MHz crystal on the module. Serial at 115200.
+  Address 0.250, 500 kbit/s; the module's crystal is named below. Serial at 115200.
 
   What it does: sends a message a second to itself, 0.250, which others acknowledge and ignore;
   so there must be a second node on the bus, with any sketch. Prints each second one of these, with
@@ -21,7 +21,9 @@
 */
 #include <Roio.h>
 
-constexpr uint32_t crystal = 16000000;  // 8000000 when the module's crystal says 8.000
+// As printed on the module's crystal: 8.000, on the usual blue module, is 8000000. With the wrong
+// one the node runs at another bit rate than its bus, though begin() says ok.
+constexpr uint32_t crystal = 16000000;
 constexpr uint32_t bitrate = 500000;
 constexpr Roio::Address own = {0, 250};
 constexpr uint32_t periodMs = 1000;

@@ -12,19 +12,24 @@
     CS                10     10          10
   Between CANH and CANL belong 120 ohms at each end of the bus.
 
-  Address 0.2, 500 kbit/s, a 16 MHz crystal on the module.
+  Address 0.2, 500 kbit/s; the module's crystal is named below.
 
   What it does: of each message to 0.2 and to 0.*, length, bytes and priority come back.
 */
 #include <Roio.h>
+
+// As printed on the module's crystal: 8.000, on the usual blue module, is 8000000. With the wrong
+// one the node runs at another bit rate than its bus, though begin() says ok.
+constexpr uint32_t crystal = 16000000;
+constexpr uint32_t bitrate = 500000;
+constexpr Roio::Address own = {0, 2};
 
 RoioOn<10> roio;  // CS
 Roio::Message message;
 bool waiting;  // for room in the chip: until then the message is kept
 
 bool begin() {
-  // With an 8 MHz crystal: Roio::bitTiming<8000000, 500000>(), Roio::Address{0, 2}
-  return roio.begin(500, 2, 0) == Roio::Status::ok;
+  return roio.begin<crystal, bitrate>(own) == Roio::Status::ok;
 }
 
 void setup() {}

@@ -12,7 +12,7 @@
   Light sensor (LDR to 5V, 10 kOhm to GND): A0. Potentiometers, ends at 5V and GND: A1, A2, A3.
   Buttons, to GND: pins 4 and 5. Between CANH and CANL belong 120 ohms at each end of the bus.
 
-  Address 0.3, 500 kbit/s, a 16 MHz crystal on the module.
+  Address 0.3, 500 kbit/s; the module's crystal is named below.
 
   What it does: sends 6 bytes to 0.10, [light, button 1, button 2, pot 1, pot 2, pot 3]: once at
   the start, then when the light differs by more than 5 from what was sent last, a potentiometer
@@ -21,7 +21,9 @@
 */
 #include <Roio.h>
 
-constexpr uint32_t crystal = 16000000;  // 8000000 when the module's crystal says 8.000
+// As printed on the module's crystal: 8.000, on the usual blue module, is 8000000. With the wrong
+// one the node runs at another bit rate than its bus, though begin() says ok.
+constexpr uint32_t crystal = 16000000;
 constexpr uint32_t bitrate = 500000;
 constexpr Roio::Address own = {0, 3};
 constexpr Roio::Address listener = {0, 10};

@@ -12,7 +12,7 @@
   Servo signals: pins 3, 5, 6. Servos have a 5 V supply of their own, its ground joined to the
   Arduino's. Between CANH and CANL belong 120 ohms at each end of the bus.
 
-  Address 0.2, 500 kbit/s, a 16 MHz crystal on the module.
+  Address 0.2, 500 kbit/s; the module's crystal is named below.
 
   What it does: the servos go to 45 degrees. Then, messages to 0.2:
     3 bytes   an angle for each servo, 0 to 180 degrees
@@ -25,7 +25,9 @@
 
 #include "TimerServo.h"  // without an AVR: #include <Servo.h>, and Servo in place of TimerServo
 
-constexpr uint32_t crystal = 16000000;  // 8000000 when the module's crystal says 8.000
+// As printed on the module's crystal: 8.000, on the usual blue module, is 8000000. With the wrong
+// one the node runs at another bit rate than its bus, though begin() says ok.
+constexpr uint32_t crystal = 16000000;
 constexpr uint32_t bitrate = 500000;
 constexpr Roio::Address own = {0, 2};
 

@@ -13,7 +13,7 @@
   It only listens and acknowledges nothing: there must be two other nodes on the bus. A frame that
   none of them acknowledges is sent, and printed, again and again.
 
-  500 kbit/s, a 16 MHz crystal on the module. Serial at 115200.
+  500 kbit/s; the module's crystal is named below. Serial at 115200.
 
   What it prints, as roio-cli dump: who to whom, priority, class, length, data in hexadecimal.
     0.10 -> 0.2 normal message [3] 5A 2D 00
@@ -26,7 +26,9 @@
 */
 #include <Roio.h>
 
-constexpr uint32_t crystal = 16000000;  // 8000000 when the module's crystal says 8.000
+// As printed on the module's crystal: 8.000, on the usual blue module, is 8000000. With the wrong
+// one the node runs at another bit rate than its bus, though begin() says ok.
+constexpr uint32_t crystal = 16000000;
 constexpr uint32_t bitrate = 500000;
 constexpr Roio::Address unused = {0, 0};  // a listener sends nothing
 constexpr uint8_t room = 60;              // for frames that wait to be printed

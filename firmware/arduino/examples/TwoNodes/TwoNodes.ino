@@ -12,7 +12,7 @@
     CS of the second        9       9           9
   CANH of one to CANH of the other, CANL to CANL, and the 120 ohm jumper set on both.
 
-  Addresses 0.1 and 0.2, 500 kbit/s, 16 MHz crystals on the modules. Serial at 115200.
+  Addresses 0.1 and 0.2, 500 kbit/s; the modules' crystals are named below. Serial at 115200.
 
   What it does: every second the first sends a number, and the second sends it back. Prints:
     0 came back after 632 us
@@ -21,7 +21,9 @@
 */
 #include <Roio.h>
 
-constexpr uint32_t crystal = 16000000;  // 8000000 when the modules' crystals say 8.000
+// As printed on the modules' crystals: 8.000, on the usual blue module, is 8000000. With the wrong
+// one a node runs at another bit rate than its bus, though begin() says ok.
+constexpr uint32_t crystal = 16000000;
 constexpr uint32_t bitrate = 500000;
 constexpr Roio::Address firstAddress = {0, 1};
 constexpr Roio::Address secondAddress = {0, 2};

@@ -16,7 +16,7 @@ struct ArduinoOptions {
   static constexpr uint8_t tx_queue = 0;
   /// Messages fetched ahead by poll(); the chip holds two, and the node one; 0..127, 13 bytes each.
   static constexpr uint8_t rx_queue = 0;
-  /// For chips before revision B2, see docs/driver.md.
+  /// For chips before revision B2, see docs/internals/driver.md.
   static constexpr bool only_buffer_0 = false;
   /// Whether errors on the bus are counted, and the chip is looked at more closely.
   static constexpr bool diagnoses = false;
@@ -70,8 +70,17 @@ class ArduinoNode {
     return bit_timing<OscHz, BitrateBps>();
   }
 
-  /// Starts the chip, or starts it again. Takes 1 ms when all is well, 60 ms at most, or twice that
-  /// on a bus that is never idle.
+  /// Starts the chip, or starts it again: roio.begin<16000000, 500000>(own). Takes 1 ms when all is
+  /// well, 60 ms at most, or twice that on a bus that is never idle.
+  /// @tparam OscHz the crystal's frequency, as printed on it.
+  /// @return ok; bad_argument: no valid address (subnet 0..31, node 0..254), or configuration mode;
+  ///         no_chip; wrong_mode. As Mcp2515::begin().
+  template <uint32_t OscHz, uint32_t BitrateBps>
+  ROIO_IN_LINE Status begin(Address own, Mode mode = Mode::normal) {
+    constexpr uint32_t cnf = mcp2515::Cnf::word(bit_timing<OscHz, BitrateBps>());
+    return begin_plain(cnf, own, mode);
+  }
+  /// With a bit timing of one's own.
   /// @return ok; bad_argument: no valid address (subnet 0..31, node 0..254), or configuration mode;
   ///         bad_timing; no_chip; wrong_mode. As Mcp2515::begin().
   ROIO_IN_LINE Status begin(const BitTiming& timing, Address own, Mode mode = Mode::normal) {

@@ -1,5 +1,5 @@
 /// Crc32c: the check of serial records, byte by byte. 1 KiB of table, in flash on an AVR, where a
-/// byte takes 21 cycles. Source: docs/serial-protocol.md "Records"; RFC 3720, B.4.
+/// byte takes 21 cycles. Source: docs/internals/serial-protocol.md "Records"; RFC 3720, B.4.
 #ifndef ROIO_CRC32C_HPP
 #define ROIO_CRC32C_HPP
 

@@ -1,5 +1,5 @@
 /// Serial protocol: what the bodies of records between a PC and a bridge say. The one text of it is
-/// docs/serial-protocol.md; names and numbers here are those of its tables.
+/// docs/internals/serial-protocol.md; names and numbers here are those of its tables.
 #ifndef ROIO_SERIAL_PROTOCOL_HPP
 #define ROIO_SERIAL_PROTOCOL_HPP
 

@@ -4,7 +4,7 @@
 ///   record = COBS( body, CRC-32C ) 0x00      body 2..56 bytes
 ///
 /// No heap, no state but what is shown; bounded by the length of a record.
-/// Source: docs/serial-protocol.md "Records".
+/// Source: docs/internals/serial-protocol.md "Records".
 #ifndef ROIO_SERIAL_RECORD_HPP
 #define ROIO_SERIAL_RECORD_HPP
 

@@ -1,6 +1,6 @@
 /// LineRate: which line rate a session has: the best that both sides can do, tried out before it is
-/// relied on, and a lower one once records are damaged often. Source: docs/serial-protocol.md
-/// "SPEED".
+/// relied on, and a lower one once records are damaged often. Source:
+/// docs/internals/serial-protocol.md "SPEED".
 #ifndef ROIO_SERIAL_LINE_RATE_HPP
 #define ROIO_SERIAL_LINE_RATE_HPP
 

@@ -1,4 +1,4 @@
-/// What the PC asks of a bridge, in bytes. Source: docs/serial-protocol.md "Down".
+/// What the PC asks of a bridge, in bytes. Source: docs/internals/serial-protocol.md "Down".
 #ifndef ROIO_SERIAL_PAYLOADS_HPP
 #define ROIO_SERIAL_PAYLOADS_HPP
 

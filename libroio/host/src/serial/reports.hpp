@@ -1,5 +1,5 @@
 /// What a bridge says of itself, read: WELCOME, STATUS and COUNTERS.
-/// Source: docs/serial-protocol.md "Up".
+/// Source: docs/internals/serial-protocol.md "Up".
 #ifndef ROIO_SERIAL_REPORTS_HPP
 #define ROIO_SERIAL_REPORTS_HPP
 

@@ -1,5 +1,6 @@
-/// SerialSession: the PC's side of docs/serial-protocol.md, without any I/O: bytes and the time go
-/// in, bytes to be sent come out. So it runs beside a port as well as in simulated time.
+/// SerialSession: the PC's side of docs/internals/serial-protocol.md, without any I/O: bytes and
+/// the time go in, bytes to be sent come out. So it runs beside a port as well as in simulated
+/// time.
 ///
 ///   session.begin(now);                       // a port has been opened
 ///   for (;;) {

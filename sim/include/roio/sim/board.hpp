@@ -15,7 +15,7 @@
 /// lead and one instruction late. The same run gives the same result every time.
 ///
 /// A board must end before its bus. Callbacks come as actions of the bus, at their exact time: they
-/// may run it. Not modelled: docs/simulator.md, "Boards".
+/// may run it. Not modelled: docs/internals/simulator.md, "Boards".
 #ifndef ROIO_SIM_BOARD_HPP
 #define ROIO_SIM_BOARD_HPP
 

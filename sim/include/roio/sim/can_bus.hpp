@@ -10,7 +10,7 @@
 /// Nodes of one bit rate (to a thousandth) keep step exactly. A node of another rate samples the
 /// wire at its own times, synchronises on falling edges as far as its jump width goes, and disturbs
 /// or is disturbed accordingly. Not modelled: propagation delay, and oscillators that drift. Not
-/// for several threads at once. Source: docs/simulator.md.
+/// for several threads at once. Source: docs/internals/simulator.md.
 #ifndef ROIO_SIM_CAN_BUS_HPP
 #define ROIO_SIM_CAN_BUS_HPP
 

@@ -1,7 +1,7 @@
 /// Mcp2515Chip: Microchip's MCP2515 as its registers, its SPI and its pins show it. Written from
 /// the datasheet alone and sharing no constant with the driver, so that one proves the other. What
-/// is modelled and what is not: docs/simulator.md. Source: MCP2515 datasheet DS20001801, named by
-/// section.
+/// is modelled and what is not: docs/internals/simulator.md. Source: MCP2515 datasheet DS20001801,
+/// named by section.
 #ifndef ROIO_SIM_MCP2515_CHIP_HPP
 #define ROIO_SIM_MCP2515_CHIP_HPP
 
