@@ -8,7 +8,7 @@ import subprocess
 from driver import GUARD, CliTest, main
 
 EXAMPLES = os.environ["ROIO_CLI_EXAMPLES"]
-SOURCES = os.path.join(os.path.dirname(__file__), "..", "..", "examples", "host")
+SOURCES = os.path.join(os.path.dirname(__file__), "..", "..", "..", "examples", "host")
 
 
 def promised(name):
