@@ -22,11 +22,8 @@ class MemoryBus;
 
 /// Who takes part, and the lock over all of them: frames are on the wire one after the other, so
 /// that everybody sees them in one order.
-class MemoryWire {
- public:
-  explicit MemoryWire(std::string name) : name(std::move(name)) {}
-
-  const std::string name;
+struct MemoryWire {
+  std::string name;
   std::mutex mutex;
   std::vector<MemoryBus*> participants;
 };
@@ -136,7 +133,9 @@ class MemoryBus final : public roio::Bus {
 }  // namespace
 
 std::shared_ptr<MemoryWire> make_memory_wire(std::string name) {
-  return std::make_shared<MemoryWire>(std::move(name));
+  auto wire = std::make_shared<MemoryWire>();
+  wire->name = std::move(name);
+  return wire;
 }
 
 std::unique_ptr<roio::Bus> open_memory_bus(std::shared_ptr<MemoryWire> wire,

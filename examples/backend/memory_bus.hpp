@@ -8,7 +8,7 @@
 #include <string>
 
 /// What the participants have in common; it lives as long as one of them does.
-class MemoryWire;
+struct MemoryWire;
 
 /// @param name Bus::name() of all participants, such as "memory:robot".
 std::shared_ptr<MemoryWire> make_memory_wire(std::string name);
