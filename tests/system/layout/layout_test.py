@@ -4,8 +4,8 @@ layout_test.py FOLDER             reads the #include lines below FOLDER, says wh
 layout_test.py FOLDER --self-test puts one line that breaks a rule into a copy, for each rule, and sees it found
 
 A part is a folder, or some files (PARTS). It may include the standard library, the system's headers, its own files
-and those of the parts that stand beside it in PARTS; nothing else of this project. Below the folders of
-RULED every source has a part.
+and those of the parts that stand beside it in PARTS; nothing else of this project. Below the folders of RULED
+every source has a part.
 
 A source file has 450 lines at most, or a line in its head comment (its first 30 lines) that begins with
 "Long, because" and says why.
@@ -58,7 +58,8 @@ PARTS = {
     "sim/board": (["sim/src/board"], ["core", "sim bus", "sim mcp2515", "sim board", "sim/avr"]),
     # Tools know public headers alone; roio-sim takes parts of roio-cli.
     "roio-cli": (["tools/roio-cli"], ["core", "host"]),
-    "roio-sim": (["tools/roio-sim"], ["core", "host", "sim bus", "sim mcp2515", "sim network", "sim board", "roio-cli"]),
+    "roio-sim": (["tools/roio-sim"],
+                 ["core", "host", "sim bus", "sim mcp2515", "sim network", "sim board", "roio-cli"]),
 }
 
 # Names in angle brackets that say nothing about the tree: <vector>, <poll.h>, <sys/ioctl.h>, other libraries'.

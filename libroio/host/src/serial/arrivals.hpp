@@ -1,5 +1,5 @@
 /// Arrivals: frames from the bridge as they come: once each, with the time at which the bridge read
-/// them, and what was lost before them. Source: docs/serial-protocol.md "Up".
+/// them, and what was lost before them. Source: docs/internals/serial-protocol.md "Up".
 #ifndef ROIO_SERIAL_ARRIVALS_HPP
 #define ROIO_SERIAL_ARRIVALS_HPP
 

@@ -1,4 +1,5 @@
-/// Output: records on their way to the port, in bytes. Source: docs/serial-protocol.md "Records".
+/// Output: records on their way to the port, in bytes. Source: docs/internals/serial-protocol.md
+/// "Records".
 #ifndef ROIO_SERIAL_OUTPUT_HPP
 #define ROIO_SERIAL_OUTPUT_HPP
 

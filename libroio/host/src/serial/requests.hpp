@@ -1,5 +1,5 @@
 /// Requests: what is asked of the bridge and answered by REPLY: one at a time, repeated until it is
-/// answered, but not for ever. Source: docs/serial-protocol.md
+/// answered, but not for ever. Source: docs/internals/serial-protocol.md
 /// "Control records, down".
 #ifndef ROIO_SERIAL_REQUESTS_HPP
 #define ROIO_SERIAL_REQUESTS_HPP
