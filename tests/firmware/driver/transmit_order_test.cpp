@@ -1,7 +1,10 @@
 // Frames leave in the order in which they were given, urgent ones first; each once, and what became
 // of it is told truly.
+// Long, because tests/firmware/mutation compiles this one file against each driver that lacks a
+// rule, and the rules below need all of it.
 //
-// tests/firmware/mutation takes the driver's rules for that away one at a time, and sees these tests fail:
+// tests/firmware/mutation takes the driver's rules for that away one at a time, and sees these
+// tests fail:
 //   the second frame goes behind the first               ManyInARow, with two places
 //   a buffer that is pending is left alone               the same
 //   buffer 2 is for urgent frames                        the same

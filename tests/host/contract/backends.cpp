@@ -8,6 +8,8 @@
 #include <roio/sim/network.hpp>
 #include <utility>
 
+#include "memory_bus.hpp"
+
 #ifdef ROIO_IMAGES_DIR
 #include "bridged_bus.hpp"
 #endif
@@ -37,6 +39,14 @@ Venue fresh_chips() {
   const auto network = std::make_shared<sim::Network>(
       sim::NetworkOptions{.name = name, .bitrate_bps = 500'000, .witness = true});
   return {name, [network](const OpenOptions& options) { return network->join(options); }};
+}
+
+/// The example of docs/internals/backend.md.
+Venue fresh_memory() {
+  const std::string name = "memory:" + fresh_name();
+  return {name, [wire = make_memory_wire(name)](const OpenOptions& options) {
+            return open_memory_bus(wire, options);
+          }};
 }
 
 #ifdef ROIO_IMAGES_DIR
@@ -71,6 +81,13 @@ std::vector<Backend> backends() {
                  .one_order = true,
                  .refills_fast = true,
                  .flood = 5'000});
+  all.push_back({.name = "memory",
+                 .fresh = fresh_memory,
+                 .arbitrates = false,
+                 .paced = false,
+                 .one_order = true,
+                 .refills_fast = true,
+                 .flood = 50'000});
 #ifdef ROIO_IMAGES_DIR
   all.push_back({.name = "serial",
                  .fresh = fresh_bridges,
@@ -90,12 +107,6 @@ std::vector<Backend> backends() {
                    .flood = 250'000});
   }
   return all;
-}
-
-std::vector<Backend> backends_where(bool Backend::*trait) {
-  std::vector<Backend> chosen = backends();
-  std::erase_if(chosen, [trait](const Backend& backend) { return !(backend.*trait); });
-  return chosen;
 }
 
 }  // namespace roio::test

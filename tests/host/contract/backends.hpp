@@ -1,5 +1,5 @@
-/// The buses that the contract suite runs against. A further backend is a further row in
-/// backends.cpp.
+/// The buses that the contract suite runs against: whoever runs it says which
+/// (docs/internals/backend.md). Here it is backends.cpp, where a further backend is a further row.
 #ifndef ROIO_TESTS_CONTRACT_BACKENDS_HPP
 #define ROIO_TESTS_CONTRACT_BACKENDS_HPP
 
@@ -36,9 +36,10 @@ inline std::ostream& operator<<(std::ostream& out, const Backend& backend) {
   return out << backend.name;
 }
 
-/// The local bus and the simulated chips always; the bridge where its image is built; SocketCAN on
-/// the interface that the environment variable ROIO_TEST_CAN names, when it is set (that one bus is
-/// then every test's: run them one at a time).
+/// To be defined by the program that the suite is linked into; called when it starts.
+/// Here: the local bus, the simulated chips and the example always; the bridge where its image is
+/// built; SocketCAN on the interface that the environment variable ROIO_TEST_CAN names, when it is
+/// set (that one bus is then every test's: run them one at a time).
 std::vector<Backend> backends();
 /// Those of them that have a trait.
 std::vector<Backend> backends_where(bool Backend::*trait);

@@ -28,6 +28,12 @@ std::ostream& operator<<(std::ostream& out, const Frame& frame) {
 
 namespace roio::test {
 
+std::vector<Backend> backends_where(bool Backend::*trait) {
+  std::vector<Backend> chosen = backends();
+  std::erase_if(chosen, [trait](const Backend& backend) { return !(backend.*trait); });
+  return chosen;
+}
+
 Frame numbered(std::uint32_t number, std::uint32_t id) {
   Frame frame{id, FrameKind::extended, sizeof number, {}};
   std::memcpy(frame.data, &number, sizeof number);

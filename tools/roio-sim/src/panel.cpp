@@ -27,11 +27,6 @@ constexpr sim::SimTime press_time = 100ms;
 constexpr sim::SimTime unfinished_line_time = 200ms;
 constexpr std::size_t longest_line = 1024;
 
-// Arduino's Serial has number 0, and a board's last SerialN this.
-int last_port(sim::BoardKind kind) {
-  return kind == sim::BoardKind::mega ? 3 : kind == sim::BoardKind::leonardo ? 1 : 0;
-}
-
 // Arduino's numbers of SS, MOSI, MISO and SCK.
 std::set<int> spi_pins(sim::BoardKind kind) {
   switch (kind) {
@@ -95,7 +90,7 @@ void Panel::watch_pins(const BoardWish& wish) {
 }
 
 void Panel::watch_serial(const BoardWish& wish) {
-  for (int port = 0; port <= last_port(wish.kind); ++port) {
+  for (int port = 0; port < board_.serial_ports(); ++port) {
     if (port == 0 && wish.has_terminal) {
       terminal_link_ = wish.terminal_link;
       terminal_ = std::make_unique<sim::SerialPty>(bus_, board_, port,

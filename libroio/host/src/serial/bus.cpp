@@ -8,7 +8,6 @@
 #include <mutex>
 #include <roio/bridge.hpp>
 #include <roio/error.hpp>
-#include <roio/parts/controller_report.hpp>
 #include <roio/parts/deadline.hpp>
 #include <roio/parts/frame_check.hpp>
 #include <roio/parts/queued_calls.hpp>
@@ -18,11 +17,14 @@
 #include <utility>
 #include <vector>
 
+#include "serial/controller_watch.hpp"
+#include "serial/filters.hpp"
 #include "serial/finder.hpp"
 #include "serial/nonce.hpp"
 #include "serial/ports.hpp"
 #include "serial/pump.hpp"
 #include "serial/trouble.hpp"
+#include "serial/wall_clock.hpp"
 
 namespace roio {
 namespace serial {
@@ -35,9 +37,7 @@ constexpr milliseconds bye_time{200};
 constexpr milliseconds retry_interval{100};  // to open the port again
 // A new filter holds when the call returns, if the bridge is there to say so.
 constexpr milliseconds filter_time{1000};
-constexpr std::size_t max_filters = 512;  // as many as SocketCAN takes
 constexpr std::size_t receive_capacity = 16384;
-constexpr milliseconds clock_step{50};  // of the wall clock, that somebody has set
 
 SerialSettings settings_of(const BusUrl& url, std::vector<serial::Rule> rules) {
   SerialSettings settings;
@@ -48,81 +48,10 @@ SerialSettings settings_of(const BusUrl& url, std::vector<serial::Rule> rules) {
   return settings;
 }
 
-/// The filters as the bridge can have them: exactly, or everything when it cannot.
-std::vector<serial::Rule> rules_of(std::span<const SocketCanFilter> filters) {
-  const bool fits = filters.size() <= max_rules &&
-                    std::none_of(filters.begin(), filters.end(), [](const SocketCanFilter& one) {
-                      return (one.can_id & socketcan::inverted) != 0;
-                    });
-  if (!fits) {
-    return {{0, 0}};
-  }
-  std::vector<serial::Rule> rules;
-  for (const SocketCanFilter& filter : filters) {
-    const std::uint32_t mask = effective_mask(filter);
-    rules.push_back({filter.can_id & mask, mask});
-  }
-  return rules;
-}
-
-BusState bus_state(BridgeState state) {
-  switch (state) {
-    case BridgeState::active:
-      return BusState::active;
-    case BridgeState::warning:
-      return BusState::warning;
-    case BridgeState::passive:
-      return BusState::passive;
-    case BridgeState::bus_off:
-      return BusState::bus_off;
-    case BridgeState::no_controller:
-    case BridgeState::stuck:
-      return BusState::down;
-    case BridgeState::absent:
-      break;
-  }
-  return BusState::absent;
-}
-
-/// Of a counter of 32 bits, which begins anew when the board is reset.
-std::uint32_t growth(std::uint32_t before, std::uint32_t now) {
-  return now >= before ? now - before : now;
-}
-
-/// The state and the error counters as they are now; while the bridge has no controller, as they
-/// were last.
-ControllerView view_after(ControllerView view, const BridgeInfo& info) {
-  const BusState state = bus_state(info.state);
-  if (state != BusState::down && state != BusState::absent) {
-    view.state = state;
-  }
-  view.transmit_errors = info.transmit_errors;
-  view.receive_errors = info.receive_errors;
-  return view;
-}
-
 /// What a condition variable can wait for.
 Timeout bounded(Timeout timeout) {
   return std::clamp<Timeout>(timeout, no_wait, std::chrono::hours(1));
 }
-
-/// The steady clock's time as wall-clock time; it goes back only when somebody sets the clock back.
-class WallClock {
- public:
-  Timestamp at(Time time) {
-    const Timestamp now = std::chrono::system_clock::now();
-    const std::chrono::nanoseconds offset = now.time_since_epoch() - steady_now();
-    if (!known_ || std::chrono::abs(offset - offset_) > clock_step) {
-      known_ = true;
-      offset_ = offset;
-    }
-    return Timestamp(time + offset_);
-  }
-
- private:
-  bool known_ = false;
-  std::chrono::nanoseconds offset_{0};
-};
 
 /// A bridge as a bus. A thread of its own serves port and session, so that neither waits for the
 /// program to call.
@@ -132,9 +61,8 @@ class SerialBus final : public Bus, public Bridge {
       : name_(std::move(name)),
         path_(std::move(path)),
         error_frames_(options.error_frames),
-        filters_(options.send_only ? std::vector<SocketCanFilter>{}
-                                   : std::vector{SocketCanFilter{0, 0}}),
-        session_(settings_of(url, rules_of(filters_)), random_nonce),
+        filters_(!options.send_only),
+        session_(settings_of(url, filters_.rules()), random_nonce),
         port_(std::in_place, path_, name_, base_rate_bps) {
     session_.begin(steady_now());
     flush();
@@ -183,7 +111,6 @@ class SerialBus final : public Bus, public Bridge {
   void flush();
   void deliver();
   void enqueue(const Frame& frame, Timestamp time);
-  [[nodiscard]] bool passes(const Frame& frame) const;
   void follow_session();
   void follow_controller();
   template <typename Ask>
@@ -206,7 +133,7 @@ class SerialBus final : public Bus, public Bridge {
 
   mutable std::mutex mutex_;
   std::condition_variable changed_;  // anything that somebody may wait for
-  std::vector<SocketCanFilter> filters_;
+  Filters filters_;
   SerialSession session_;
   std::optional<SerialPort> port_;  // replaced by the serving thread only
   bool port_failed_ = false;
@@ -216,9 +143,8 @@ class SerialBus final : public Bus, public Bridge {
   std::size_t waiting_seen_ = 0;      // in the session
   Time awake_at_{0};                  // the serving thread, if nothing else wakes it
   WallClock wall_clock_;
-  ControllerView view_;
+  ControllerWatch controller_;
   std::uint64_t counter_reports_seen_ = 0;
-  BridgeCounters counters_seen_;
   Statistics statistics_;
   std::thread thread_;
 };
@@ -311,21 +237,15 @@ Transfer SerialBus::receive(std::span<Received> frames, Timeout timeout) {
 }
 
 void SerialBus::set_filters(std::span<const SocketCanFilter> filters) {
-  if (filters.size() > max_filters) {
+  if (filters.size() > Filters::max_count) {
     throw std::system_error(Errc::too_many_filters, name_);
   }
   Lock lock(mutex_);
-  filters_.assign(filters.begin(), filters.end());
+  filters_.set(filters);
   // Without an answer, the next session begins with them.
   await_reply(lock, filter_time, [this](SerialSession::Done done) {
-    session_.set_rules(rules_of(filters_), steady_now(), std::move(done));
+    session_.set_rules(filters_.rules(), steady_now(), std::move(done));
   });
-}
-
-bool SerialBus::passes(const Frame& frame) const {
-  const std::uint32_t tagged = tagged_id(frame);
-  return std::any_of(filters_.begin(), filters_.end(),
-                     [tagged](const SocketCanFilter& filter) { return accepts(filter, tagged); });
 }
 
 BusState SerialBus::state() const {
@@ -412,7 +332,7 @@ void SerialBus::follow_session() {
 void SerialBus::deliver() {
   for (const SerialSession::Arrived& arrived : session_.take_arrived()) {
     queue_.lose(arrived.lost_before);
-    if (passes(arrived.frame)) {
+    if (filters_.pass(arrived.frame)) {
       enqueue(arrived.frame, wall_clock_.at(arrived.time));
     }
   }
@@ -424,30 +344,20 @@ void SerialBus::enqueue(const Frame& frame, Timestamp time) {
   }
 }
 
-/// Reports what the bridge's counters say that happened to its controller, as SocketCAN's drivers
-/// do. They come at once after a change of the state, and else once in a second.
 void SerialBus::follow_controller() {
-  if (counter_reports_seen_ == session_.counter_reports()) {
+  if (std::exchange(counter_reports_seen_, session_.counter_reports()) ==
+      session_.counter_reports()) {
     return;
   }
-  const bool is_first = counter_reports_seen_ == 0;
-  counter_reports_seen_ = session_.counter_reports();
-  const BridgeCounters before = std::exchange(counters_seen_, session_.bridge_counters());
-  const ControllerView last = std::exchange(view_, view_after(view_, session_.info()));
-  if (is_first) {
+  const auto news = controller_.take(session_.bridge_counters(), session_.info());
+  if (!news) {
     return;
   }
-  view_.overruns += growth(before.overflows, counters_seen_.overflows);
-  view_.bus_offs += growth(before.bus_offs, counters_seen_.bus_offs);
-  view_.message_errors += growth(before.message_errors, counters_seen_.message_errors);
-  if (!is_news(last, view_)) {
-    return;
-  }
-  statistics_.overruns += view_.overruns - last.overruns;
-  statistics_.bus_offs += view_.bus_offs - last.bus_offs;
+  statistics_.overruns += news->overruns;
+  statistics_.bus_offs += news->bus_offs;
   ++statistics_.error_frames;
   if (error_frames_) {
-    enqueue(error_report(last, view_), wall_clock_.at(steady_now()));
+    enqueue(news->report, wall_clock_.at(steady_now()));
   }
 }
 

@@ -133,6 +133,8 @@ class Board {
   // the Leonardo's 0, which is USB with a PC at its other end: that sets it up some 10 ms after the
   // board starts. All throw std::invalid_argument for one that is not there ---------------------
 
+  /// How many there are, counted from 0: 1, 2 (0 is USB), 4.
+  [[nodiscard]] int serial_ports() const;
   /// Called with each byte that the board sent, at the end of its last bit, or of its USB packet.
   void on_serial(int port, std::function<void(std::uint8_t)> listener);
   /// Sends to the board, one byte after the other, at the rate that its program has set.

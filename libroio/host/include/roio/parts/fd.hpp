@@ -1,3 +1,4 @@
+/// File descriptors that are owned, and a flag that poll() can wait for.
 #ifndef ROIO_PARTS_FD_HPP
 #define ROIO_PARTS_FD_HPP
 
@@ -6,7 +7,8 @@
 
 namespace roio {
 
-/// Owns a file descriptor; -1 is none.
+/// Owns a file descriptor and closes it at its end; -1 is none. Moves as unique_ptr does. For one
+/// thread at a time; no errors (what close() says is not heard).
 class UniqueFd {
  public:
   UniqueFd() = default;
@@ -24,21 +26,28 @@ class UniqueFd {
 
   [[nodiscard]] int get() const noexcept { return fd_; }
   explicit operator bool() const noexcept { return fd_ >= 0; }
+  /// Closes what it has, and owns `fd` from now on.
   void reset(int fd = -1) noexcept;
 
  private:
   int fd_ = -1;
 };
 
-/// A flag that poll() can wait for: readable while it is set.
+/// A flag that poll() can wait for: its descriptor is readable while it is set. Any number of
+/// threads may use it at once; it must outlive whoever polls its descriptor.
+///
+/// Who sets it does so after the thing that it tells of; who waits clears it before (or under the
+/// same lock as) looking whether the thing is there. The other way around a change is missed.
 class EventFlag {
  public:
   EventFlag();  ///< @throws std::system_error when there are no descriptors left.
 
   /// Safe in a signal handler. Setting what is set changes nothing.
   void set() noexcept;
+  /// Clearing what is clear changes nothing.
   void clear() noexcept;
   [[nodiscard]] bool is_set() const noexcept;
+  /// For poll() with POLLIN only: do not read, write or close it. Stays the same.
   [[nodiscard]] int fd() const noexcept { return fd_.get(); }
 
  private:

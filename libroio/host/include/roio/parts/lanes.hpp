@@ -7,12 +7,16 @@
 
 namespace roio {
 
-/// Frames keep their order within a lane; those in the urgent lane pass the others.
+/// The two lanes of a transmit queue, for backends that let urgent frames pass: frames keep their
+/// order within a lane, and those in the urgent lane go before the others. Indices into an array of
+/// lane_count queues.
 inline constexpr std::size_t lane_count = 2;
 inline constexpr std::size_t urgent_lane = 0;
 inline constexpr std::size_t normal_lane = 1;
 
-/// As the driver has it, for which a remote frame is as urgent as its identifier says.
+/// Which lane a frame belongs to, as the MCP2515 driver has it: urgent when bit 28 of an extended
+/// identifier is 0. A remote frame is as urgent as its identifier says; a standard frame is not.
+/// @param frame is_valid(). Pure.
 inline std::size_t lane_in_driver(const Frame& frame) noexcept {
   return is_extended(frame.kind) && unpack_id(frame.id).priority == Priority::urgent ? urgent_lane
                                                                                      : normal_lane;

@@ -1,3 +1,7 @@
+/// The course of Bus::send() and Bus::receive() where another thread serves queues: the same for
+/// all such buses, whatever is behind the queues. They wait without any lock; what they are given
+/// is called in the calling thread and takes the backend's lock by itself. What that throws, they
+/// throw.
 #ifndef ROIO_PARTS_QUEUED_CALLS_HPP
 #define ROIO_PARTS_QUEUED_CALLS_HPP
 
@@ -11,12 +15,15 @@
 #include <roio/parts/waits.hpp>
 #include <span>
 
-/// The course of Bus::send() and Bus::receive() where another thread serves queues: the same for
-/// all such buses, whatever is behind the queues.
 namespace roio {
 
-/// @param take how many frames it has taken; none: the bus is closed.
-/// @param readable set while there may be some.
+/// Bus::receive(): takes what there is; when that is nothing, waits for the first.
+/// @param readable set while there may be some: ReceiveQueue::readable().
+/// @param frames where to; empty: looks whether the bus is closed or cancelled, and does not wait.
+/// @param take std::optional<std::size_t>(std::span<Received>): how many frames it has taken, 0
+/// when
+///        there are none and `readable` is clear; none: the bus is closed. Called once or more.
+/// @return as the contract has it: what is there is given even when the bus is cancelled.
 template <typename Take>
 Transfer receive_queued(const Waits& waits, const EventFlag& readable, std::span<Received> frames,
                         Timeout timeout, const Take& take) {
@@ -37,9 +44,14 @@ Transfer receive_queued(const Waits& waits, const EventFlag& readable, std::span
   }
 }
 
-/// @param offer how many of the frames it has accepted; none: the bus is closed. If not all, it has
-///        cleared `sendable`, which is set when there may be room again.
-/// @param count told each time that it waits (false), and when it gives up at its deadline (true).
+/// Bus::send(): offers the frames, and those left over again whenever there may be room.
+/// @param frames checked already: check_sendable().
+/// @param offer std::optional<std::size_t>(std::span<const Frame>): how many of the frames it has
+///        accepted, from the first; none: the bus is closed. If not all, it has cleared `sendable`,
+///        under the lock under which it found no room; who makes room sets it. Called once or more.
+/// @param count void(bool): told each time that it waits (false), and when it gives up at its
+///        deadline (true), for Statistics::send_waits and send_timeouts.
+/// @return ok when all were accepted; else the first Transfer::count were.
 template <typename Offer, typename Count>
 Transfer send_queued(const Waits& waits, const EventFlag& sendable, std::span<const Frame> frames,
                      Timeout timeout, const Offer& offer, const Count& count) {

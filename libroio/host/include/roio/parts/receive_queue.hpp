@@ -11,13 +11,19 @@
 
 namespace roio {
 
-/// Received frames that wait for the program, each with what was lost before it. Not for two
-/// threads at once, but for readable().
+/// Received frames that wait for the program, each with what was lost before it. Bounded: a frame
+/// that finds no room is dropped, counted, and told with the next one that finds room.
+///
+/// Not for two threads at once, but for readable(): the backend's lock is held for everything else.
+/// Takes no memory before frames come.
 class ReceiveQueue {
  public:
+  /// @param capacity how many frames may wait; above 0.
+  /// @throws std::system_error: no descriptors left.
   explicit ReceiveQueue(std::size_t capacity) : capacity_(capacity) {}
 
-  /// The oldest, as many as there are and there is room for.
+  /// Moves the oldest to `frames`, as many as there are and there is room for. The last one clears
+  /// readable(). @return how many.
   std::size_t take(std::span<Received> frames) {
     const std::size_t count = std::min(frames.size(), queue_.size());
     const auto end = queue_.begin() + static_cast<std::ptrdiff_t>(count);
@@ -33,7 +39,9 @@ class ReceiveQueue {
     return count;
   }
 
-  /// One that finds no room is lost, and counted.
+  /// A frame that has come, after filters. The first sets readable(). One that finds no room is
+  /// dropped and counted.
+  /// @param time when it was on the bus.
   void put(const Frame& frame, Timestamp time) {
     if (queue_.size() >= capacity_) {
       ++dropped_;
@@ -45,9 +53,10 @@ class ReceiveQueue {
       readable_.set();
     }
   }
-  /// Frames lost elsewhere, which are told with the next.
+  /// Frames lost elsewhere, before they came here: told with the next frame, but not counted by
+  /// add_to(), since whoever knows of them counts them.
   void lose(std::uint64_t count) { lost_ += count; }
-  /// As if nothing had ever come.
+  /// As if nothing had ever come: for what was received before open() returns.
   void forget() {
     queue_.clear();
     readable_.clear();
@@ -55,7 +64,7 @@ class ReceiveQueue {
   }
 
   [[nodiscard]] std::size_t size() const { return queue_.size(); }
-  /// Set while frames wait.
+  /// Set while frames wait. Its descriptor is the one for Bus::fd().
   [[nodiscard]] const EventFlag& readable() const { return readable_; }
   /// Adds what it has counted: received without error reports, dropped for want of room.
   void add_to(Statistics& statistics) const {

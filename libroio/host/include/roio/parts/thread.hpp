@@ -9,7 +9,9 @@
 
 namespace roio {
 
-/// While it lives, the calling thread and those it starts take no signals.
+/// While it lives, the calling thread and those it starts take no signals. Ends in the thread that
+/// it began in. A library's threads must not get the program's signals: a handler would run in a
+/// thread that the program knows nothing of, and the program's own waits would go on.
 class SignalsBlocked {
  public:
   SignalsBlocked() {
@@ -26,6 +28,9 @@ class SignalsBlocked {
 };
 
 /// Starts a thread that no signal is delivered to: those are the program's own.
+/// @param function what it runs. It must not throw: that would end the program.
+/// @return to be joined before anything that it uses ends.
+/// @throws std::system_error: the system has no more threads.
 template <typename Function>
 std::thread start_thread(Function&& function) {
   const SignalsBlocked blocked;
