@@ -1,6 +1,6 @@
 # roio_add_contract_test(<name> <source>...): the contract of roio::Bus as a test program, against the
 # buses that the sources name: they define roio::test::backends() (tests/host/contract/backends.hpp).
-# For backends outside of this tree, too: docs/internals/backend.md. It needs GoogleTest.
+# For backends outside of this tree, too: docs/backend.md. It needs GoogleTest.
 include_guard(GLOBAL)
 set(roio_contract_dir ${CMAKE_CURRENT_LIST_DIR}/../tests/host/contract)
 

@@ -1,5 +1,5 @@
 // A bus within one program: what one participant sends, the others receive. It shows how a backend
-// is made of <roio/parts.hpp>; docs/internals/backend.md goes through it.
+// is made of <roio/parts.hpp>; docs/backend.md goes through it.
 #ifndef MEMORY_BUS_HPP
 #define MEMORY_BUS_HPP
 

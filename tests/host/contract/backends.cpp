@@ -41,7 +41,7 @@ Venue fresh_chips() {
   return {name, [network](const OpenOptions& options) { return network->join(options); }};
 }
 
-/// The example of docs/internals/backend.md.
+/// The example of docs/backend.md.
 Venue fresh_memory() {
   const std::string name = "memory:" + fresh_name();
   return {name, [wire = make_memory_wire(name)](const OpenOptions& options) {

@@ -1,5 +1,5 @@
 /// The buses that the contract suite runs against: whoever runs it says which
-/// (docs/internals/backend.md). Here it is backends.cpp, where a further backend is a further row.
+/// (docs/backend.md). Here it is backends.cpp, where a further backend is a further row.
 #ifndef ROIO_TESTS_CONTRACT_BACKENDS_HPP
 #define ROIO_TESTS_CONTRACT_BACKENDS_HPP
 

@@ -1,5 +1,5 @@
 /// What a backend is made of: a class that implements roio::Bus (bus.hpp) over some carrier. Its
-/// contract is bus.hpp's; docs/internals/backend.md builds one and runs the contract suite against
+/// contract is bus.hpp's; docs/backend.md builds one and runs the contract suite against
 /// it.
 ///
 /// Which part for what:
