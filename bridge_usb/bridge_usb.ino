@@ -8,7 +8,10 @@
   Parts
     line_uart.h, line_usb.h   bytes to and from the PC
     can_side.h                the MCP2515
-    session.h                 Roio's protocol
+    session.h                 Roio's protocol: how a session begins, goes on and ends
+      session_down.h            what the PC sends: frames for the bus, and requests
+      session_up.h              what it gets: frames from the bus, answers and reports
+      frame_body.h, pc_filter.h a frame in a record, and which of them the PC wants
     slcan_side.h              SLCAN
     own_node.h                the bridge as a node of the network
 */

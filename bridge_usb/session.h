@@ -1,4 +1,6 @@
-/// Session: the bridge's side of docs/internals/serial-protocol.md.
+/// Session: the bridge's side of docs/internals/serial-protocol.md. Here is how a session begins,
+/// goes on at another rate, and ends; what goes down and up within one is session_down.h's and
+/// session_up.h's.
 ///
 /// Up: frames are numbered as they come; one that finds no room is left out, and its number shows
 /// that. Down: frames are taken in order, once. Answers that find no room wait for it, one of each
@@ -10,6 +12,7 @@
 #include "indicator.h"
 #include "line.h"
 #include "own_node.h"
+#include "pc_filter.h"
 #include "tally.h"
 
 namespace roio {
@@ -39,9 +42,7 @@ class Session {
         change_(Change::none),
         new_rate_bps_(0),
         heard_at_(0),
-        everything_passes_(true),
-        rule_count_(0),
-        rules_(),
+        filter_(),
         head_() {}
 
   bool is_open() const { return session_ != serial::no_session; }
@@ -95,31 +96,28 @@ class Session {
 
   enum class Change : uint8_t { none, draining, on_trial };
 
-  struct Rule {
-    uint32_t match;
-    uint32_t mask;
-  };
-
+  // how a session begins, goes on and ends
   void hello(const uint8_t* body, uint8_t length);
-  void heard();
-  void end();
-  void serve(const uint8_t* body, uint8_t length);
-  void take_frame(const uint8_t* body, uint8_t length);
   void set_session(uint32_t session) {
     session_ = session;
     reader_.expect(session);
   }
-  static bool read_body(const uint8_t* body, uint8_t length, Mcp2515Frame& frame);
+  void heard();
+  void end();
+  Status set_speed(const uint8_t* payload);
+  void change_speed();
+
+  // down
+  void serve(const uint8_t* body, uint8_t length);
+  void take_frame(const uint8_t* body, uint8_t length);
   void notice_sequence(uint8_t sequence);
   void control(serial::Down operation, const uint8_t* payload, uint8_t length);
   void reply_to(uint8_t request, Status status);
   Status set_bus(const uint8_t* payload);
-  Status set_filter(const uint8_t* payload, uint8_t length);
-  Status set_speed(const uint8_t* payload);
   void echo(const uint8_t* payload, uint8_t length);
-  bool passes(const uint8_t* tag_bytes) const;
+
+  // up
   uint8_t put_head(const Mcp2515Frame& frame, bool remote, uint16_t ticks);
-  void change_speed();
   void send_answers();
   void send_welcome();
   void send_status();
@@ -158,13 +156,9 @@ class Session {
   Change change_;
   uint32_t new_rate_bps_;
   uint16_t heard_at_;
-  bool everything_passes_;
-  uint8_t rule_count_;
-  Rule rules_[serial::max_rules];
+  PcFilter filter_;
   uint8_t head_[serial::frame_head_up + 1];  // not on the stack, which an AVR is slow at
 };
-
-// --- sessions ------------------------------------------------------------------------------------
 
 inline void Session::hello(const uint8_t* body, uint8_t length) {
   const uint32_t session = serial::get32(body + serial::control_head + 1);
@@ -209,282 +203,6 @@ inline void Session::end() {
   line_.release();
 }
 
-// --- down ----------------------------------------------------------------------------------------
-
-inline void Session::serve(const uint8_t* body, uint8_t length) {
-  if (!serial::is_control(body[0])) {
-    take_frame(body, length);
-    return;
-  }
-  notice_sequence(body[1]);
-  control(static_cast<serial::Down>(body[0]), body + serial::control_head,
-          static_cast<uint8_t>(length - serial::control_head));
-}
-
-/// Frames that should have come by now, and have not.
-inline void Session::notice_sequence(uint8_t sequence) {
-  const uint8_t ahead = static_cast<uint8_t>(sequence - next_);
-  if (ahead != 0 && ahead < 0x80 && !gap_told_) {
-    gap_told_ = true;
-    wanted_ |= results_again;
-  }
-}
-
-/// The chip's bytes of a frame, from the body of its record: put_body() the other way round.
-/// @return false: none that a bus carries.
-inline bool Session::read_body(const uint8_t* body, uint8_t length, Mcp2515Frame& frame) {
-  const uint8_t kind = body[0] & serial::control_bits;
-  const uint8_t payload = static_cast<uint8_t>(length - serial::frame_head_down);
-  uint8_t* chip = frame.bytes;
-  if (length < serial::frame_head_down || (kind & 0x20) != 0) {
-    return false;
-  }
-  if ((kind & 0x80) != 0) {
-    chip[0] = static_cast<uint8_t>((body[0] << 3) | (body[1] >> 5));
-    chip[1] = static_cast<uint8_t>(((body[1] << 3) & 0xE0) | Mcp2515Frame::extended_bit |
-                                   (body[1] & 0x03));
-    chip[2] = body[2];
-    chip[3] = body[3];
-  } else {
-    if ((body[0] & 0x1F) != 0 || body[1] != 0 || body[2] > 7) {
-      return false;
-    }
-    chip[0] = static_cast<uint8_t>((body[2] << 5) | (body[3] >> 3));
-    chip[1] = static_cast<uint8_t>(body[3] << 5);
-    chip[2] = 0;
-    chip[3] = 0;
-  }
-  body += serial::frame_head_down;
-  if ((kind & 0x40) != 0) {
-    chip[4] = static_cast<uint8_t>(*body | Mcp2515Frame::remote_bit);
-    return payload == 1 && *body <= max_data_length;
-  }
-  if (payload > max_data_length) {
-    return false;
-  }
-  chip[4] = payload;
-  uint8_t* data = frame.data();
-  for (uint8_t left = payload; left != 0; --left) {
-    *data++ = *body++;
-  }
-  return true;
-}
-
-ROIO_BRIDGE_FAST inline void Session::take_frame(const uint8_t* body, uint8_t length) {
-  Mcp2515Frame frame;
-  if (!read_body(body, length, frame)) {
-    ++tally_.damaged;
-    return;
-  }
-  const uint8_t sequence = body[serial::sequence_at];
-  if (sequence != next_) {
-    notice_sequence(sequence);
-    return;
-  }
-  Slots& slots = can_.slots();
-  const uint8_t token = slots.token_of(sequence);
-  slots.begin(token);
-  const Status status = can_.send(frame, token);
-  if (status != Status::ok) {
-    slots.end(token, serial::Outcome::not_sent);
-    if (status == Status::full || status == Status::no_chip) {
-      return;  // not taken: the PC sends it again when it has waited long enough
-    }
-  }
-  next_ = static_cast<uint8_t>(next_ + 1U);
-  gap_told_ = false;
-  slots.add_news();
-}
-
-inline void Session::control(serial::Down operation, const uint8_t* payload, uint8_t length) {
-  if (operation == serial::Down::poll && length == 1) {
-    wanted_ |= status | results;
-    if (payload[0] != 0) {
-      wanted_ |= counters;
-      next_counter_ = 0;
-    }
-    return;
-  }
-  if (operation == serial::Down::echo) {
-    echo(payload, length);
-    return;
-  }
-  if (length == 0) {
-    ++tally_.damaged;
-    return;
-  }
-  const uint8_t request = payload[0];
-  const uint8_t rest = static_cast<uint8_t>(length - 1U);
-  ++payload;
-  Status result = Status::bad_argument;
-  switch (operation) {
-    case serial::Down::bus:
-      if (rest == 5) {
-        result = set_bus(payload);
-      }
-      break;
-    case serial::Down::filter:
-      result = set_filter(payload, rest);
-      break;
-    case serial::Down::address:
-      if (rest == 2) {
-        result = node_.set_address(Address{payload[0], payload[1]});
-      }
-      break;
-    case serial::Down::identify:
-      if (rest == 1) {
-        indicator_.identify(payload[0]);
-        result = Status::ok;
-      }
-      break;
-    case serial::Down::speed:
-      if (rest == 4) {
-        result = set_speed(payload);
-      }
-      break;
-    case serial::Down::bye:
-      if (rest == 0) {
-        change_ = Change::draining;
-        new_rate_bps_ = 0;
-        result = Status::ok;
-      }
-      break;
-    default:
-      break;
-  }
-  reply_to(request, result);
-}
-
-inline void Session::reply_to(uint8_t request, Status result) {
-  reply_request_ = request;
-  reply_status_ = result;
-  wanted_ |= reply;
-}
-
-inline Status Session::set_bus(const uint8_t* payload) {
-  return can_.configure(serial::get32(payload), static_cast<serial::Mode>(payload[4]));
-}
-
-inline Status Session::set_filter(const uint8_t* payload, uint8_t length) {
-  const uint8_t count = length == 0 ? uint8_t{0xFF} : payload[0];
-  if (count > serial::max_rules || length != 1 + count * sizeof(Rule)) {
-    return Status::bad_argument;
-  }
-  rule_count_ = count;
-  everything_passes_ = false;
-  ++payload;
-  for (uint8_t i = 0; i < count; ++i) {
-    rules_[i].match = serial::get32(payload);
-    rules_[i].mask = serial::get32(payload + 4);
-    payload += sizeof(Rule);
-    everything_passes_ = everything_passes_ || rules_[i].mask == 0;
-  }
-  return Status::ok;
-}
-
-inline Status Session::set_speed(const uint8_t* payload) {
-  const uint32_t rate_bps = serial::get32(payload);
-  for (uint8_t i = 0; i < serial::rate_count; ++i) {
-    if (serial::rate_bps(i) == rate_bps) {
-      new_rate_bps_ = rate_bps;
-      change_ = Change::draining;
-      return Status::ok;
-    }
-  }
-  return Status::bad_argument;
-}
-
-inline void Session::echo(const uint8_t* payload, uint8_t length) {
-  if (!has_room(static_cast<uint8_t>(serial::control_head + length))) {
-    return;  // the PC asks again
-  }
-  serial::Body head;
-  begin(head, serial::Up::echoed);
-  write(session_, head.bytes(), head.length(), payload, length);
-}
-
-// --- up ------------------------------------------------------------------------------------------
-
-/// There is room.
-ROIO_BRIDGE_FAST __attribute__((noinline)) inline void Session::write(uint32_t session,
-                                                                      const uint8_t* body,
-                                                                      uint8_t length,
-                                                                      const uint8_t* more,
-                                                                      uint8_t more_length) {
-  line_.commit(serial::write_record(line_.sink(), session, body, length, more, more_length));
-}
-
-ROIO_BRIDGE_FAST inline bool Session::passes(const uint8_t* tag_bytes) const {
-  const uint32_t tag = serial::get32(tag_bytes);
-  for (uint8_t i = 0; i < rule_count_; ++i) {
-    if (((tag ^ rules_[i].match) & rules_[i].mask) == 0) {
-      return true;
-    }
-  }
-  return false;
-}
-
-/// Into head_: a frame's record but for its data, from the chip's bytes: no word is ever put
-/// together, which an AVR would do byte by byte and bit by bit.
-/// @return its length.
-inline uint8_t Session::put_head(const Mcp2515Frame& frame, bool remote, uint16_t ticks) {
-  const uint8_t first = frame.bytes[0];
-  const uint8_t second = frame.bytes[1];
-  uint8_t kind = remote ? 0x40 : 0x00;
-  if (frame.is_extended()) {
-    const uint8_t high = first >> 3;
-    const uint8_t middle = static_cast<uint8_t>(first << 5);
-    const uint8_t low = second >> 3;
-    kind |= 0x80;
-    head_[0] = kind | high;
-    head_[1] = static_cast<uint8_t>(middle | (low & 0x1C) | (second & 0x03));
-    head_[2] = frame.bytes[2];
-    head_[3] = frame.bytes[3];
-  } else {
-    head_[0] = kind;
-    head_[1] = 0;
-    head_[2] = static_cast<uint8_t>(first >> 5);
-    head_[3] = static_cast<uint8_t>((first << 3) | (second >> 5));
-  }
-  head_[serial::sequence_at] = static_cast<uint8_t>(due_);
-  head_[serial::time_at] = static_cast<uint8_t>(ticks >> 8);
-  head_[serial::time_at + 1] = static_cast<uint8_t>(ticks);
-  head_[serial::frame_head_up] = frame.length();  // in place of data
-  return remote ? serial::frame_head_up + 1 : serial::frame_head_up;
-}
-
-ROIO_BRIDGE_FAST inline void Session::forward(const Mcp2515Frame& frame, uint16_t ticks) {
-  const bool remote = frame.is_remote();
-  const uint8_t head_length = put_head(frame, remote, ticks);
-  const uint8_t data_length = remote ? uint8_t{0} : frame.length();
-  if (!everything_passes_ && !passes(head_)) {
-    return;
-  }
-  ++due_;
-  if (!is_open()) {
-    return;
-  }
-  // A line that is to change its rate has to run empty, and WELCOME needs more room than a frame.
-  if (change_ == Change::draining || (wanted_ & welcome) != 0 ||
-      !has_room(static_cast<uint8_t>(head_length + data_length + reserve))) {
-    ++tally_.dropped;
-    return;
-  }
-  write(session_, head_, head_length, frame.data(), data_length);
-}
-
-ROIO_BRIDGE_FAST inline void Session::answer() {
-  if (can_.slots().is_news_due(line_.room() < quiet_room) && is_open()) {
-    wanted_ |= results;
-  }
-  if (wanted_ != 0) {
-    send_answers();
-  }
-  if (change_ == Change::draining) {
-    change_speed();
-  }
-}
-
 inline void Session::tend() {
   if (!is_open()) {
     return;
@@ -497,6 +215,18 @@ inline void Session::tend() {
                                                                  : serial::pc_silence_ms)) {
     end();
   }
+}
+
+inline Status Session::set_speed(const uint8_t* payload) {
+  const uint32_t rate_bps = serial::get32(payload);
+  for (uint8_t i = 0; i < serial::rate_count; ++i) {
+    if (serial::rate_bps(i) == rate_bps) {
+      new_rate_bps_ = rate_bps;
+      change_ = Change::draining;
+      return Status::ok;
+    }
+  }
+  return Status::bad_argument;
 }
 
 inline void Session::change_speed() {
@@ -513,94 +243,10 @@ inline void Session::change_speed() {
   heard_at_ = clock_.coarse();
 }
 
-/// One at a time, so that the bus does not wait.
-inline void Session::send_answers() {
-  if ((wanted_ & welcome) != 0 && has_room(serial::welcome_length)) {
-    wanted_ &= static_cast<uint8_t>(~welcome);
-    send_welcome();
-  } else if ((wanted_ & reply) != 0 && has_room(serial::reply_length)) {
-    wanted_ &= static_cast<uint8_t>(~reply);
-    serial::Body body;
-    begin(body, serial::Up::reply);
-    body.put(reply_request_);
-    body.put(static_cast<uint8_t>(reply_status_));
-    write(body);
-  } else if ((wanted_ & (results | results_again)) != 0 && has_room(serial::results_length)) {
-    send_results();
-    wanted_ &= static_cast<uint8_t>(~(results | results_again));
-  } else if ((wanted_ & status) != 0 && has_room(serial::status_length)) {
-    wanted_ &= static_cast<uint8_t>(~status);
-    send_status();
-  } else if ((wanted_ & counters) != 0 && has_room(serial::counters_length)) {
-    send_counters();
-  }
-}
-
-inline void Session::send_welcome() {
-  serial::Body body;
-  begin(body, serial::Up::welcome);
-  body.put(serial::protocol_version);
-  body.put32(welcomed_);
-  body.put32(previous_);
-  body.put32(previous_due_);
-  body.put(ROIO_VERSION_MAJOR);
-  body.put(ROIO_VERSION_MINOR);
-  body.put(ROIO_VERSION_PATCH);
-  body.put(static_cast<uint8_t>(board));
-  body.put(static_cast<uint8_t>((Line::rate_matters ? serial::rate_matters : 0U) |
-                                (can_.interrupt_is_wired() ? serial::interrupt_is_wired : 0U)));
-  body.put(serial::window);
-  body.put16(static_cast<uint16_t>(can_.osc_hz() / 1000U));
-  body.put32(can_.bitrate_bps());
-  body.put(static_cast<uint8_t>(can_.mode()));
-  body.put(node_.address().subnet);
-  body.put(node_.address().node);
-  body.put((1U << serial::rate_count) - 1U);
-  write(serial::no_session, body.bytes(), body.length());
-}
-
-inline void Session::send_status() {
-  uint8_t transmit = 0;
-  uint8_t receive = 0;
-  can_.read_error_counters(transmit, receive);
-  serial::Body body;
-  begin(body, serial::Up::status);
-  body.put32(clock_.ticks());
-  body.put32(due_);
-  body.put(static_cast<uint8_t>(can_.state()));
-  body.put(transmit);
-  body.put(receive);
-  write(body);
-}
-
-/// In parts, or the bus would wait too long.
-inline void Session::send_counters() {
-  serial::Body body;
-  begin(body, serial::Up::counters);
-  body.put(next_counter_);
-  for (uint8_t i = 0; i < serial::counters_at_once && next_counter_ < serial::counter_count; ++i) {
-    body.put32(tally_.value(next_counter_++));
-  }
-  write(body);
-  if (next_counter_ == serial::counter_count) {
-    next_counter_ = 0;
-    wanted_ &= static_cast<uint8_t>(~counters);
-  }
-}
-
-inline void Session::send_results() {
-  can_.slots().take_news();
-  serial::Body body;
-  begin(body, serial::Up::results);
-  body.put(next_);
-  body.put((wanted_ & results_again) != 0 ? serial::again : uint8_t{0});
-  for (uint8_t n = 4; n-- != 0;) {
-    body.put(can_.slots().byte(n));
-  }
-  write(body);
-}
-
 }  // namespace bridge
 }  // namespace roio
+
+#include "session_down.h"
+#include "session_up.h"
 
 #endif

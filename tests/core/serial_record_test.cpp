@@ -150,6 +150,26 @@ TEST(Crc32c, HasTheValueThatItsAuthorsGive) {
   EXPECT_EQ(check.value(), 0xE3069283U);
 }
 
+TEST(Crc32c, ItsOwnSumEndsItWhateverComesBefore) {
+  std::mt19937 random = test::seeded_generator();
+  for (int run = 0; run < 2'000; ++run) {
+    Crc32c check(static_cast<std::uint32_t>(random()));
+    for (std::size_t left = random() % 60; left > 0; --left) {
+      check.add(static_cast<std::uint8_t>(random()));
+    }
+    Crc32c sum = check;
+    const std::uint32_t wrong_bit = random() % 32;
+    Crc32c wrong = check;
+    for (std::uint32_t i = 0; i < 4; ++i) {
+      const std::uint8_t byte = sum.take_byte();
+      check.add(byte);
+      wrong.add(static_cast<std::uint8_t>(byte ^ (wrong_bit / 8 == i ? 1U << wrong_bit % 8 : 0U)));
+    }
+    ASSERT_TRUE(check.ends_with_sum());
+    ASSERT_FALSE(wrong.ends_with_sum());
+  }
+}
+
 TEST(SerialRecord, AnyBodyComesBack) {
   std::mt19937 random = test::seeded_generator();
   for (int run = 0; run < 20'000; ++run) {

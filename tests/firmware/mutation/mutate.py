@@ -147,7 +147,7 @@ MUTATIONS = {
         OTHER, ["Receive.RemoteAndStandardFramesAreCountedAndDropped"]),
     "overflows_are_looked_for": (
         "look for an overflow after both buffers were full",
-        "    calls_ |= mcp2515::calls_between_checks;",
+        "    check_soon();",
         "",
         OTHER, ["Overflow.EachLossThatIsServedInBetweenIsCounted"]),
     "overflow_flags_are_cleared": (

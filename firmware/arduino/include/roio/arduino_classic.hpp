@@ -102,8 +102,7 @@ class ClassicNode : public ArduinoNode<ArduinoPort<SetPin, NoPin>, ArduinoOption
   uint8_t status() { return driver_.read_status(); }
 
   /// @param mode as in CANCTRL: 0x00 normal, 0x40 loopback, 0x60 listening only; others, sleep
-  /// among
-  ///        them, are refused.
+  ///        among them, are refused.
   /// @return as changeMode(Mode).
   Status changeMode(uint8_t mode) {
     switch (mode) {

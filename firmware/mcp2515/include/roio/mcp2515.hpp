@@ -277,8 +277,7 @@ class Mcp2515 {
   /// should take, and 120 ms, at most.
   /// @param osc_hz what the timing was computed for, 1,000,000 or more.
   /// @param measured_hz what the oscillator is, to some percent; 0 when it is slower than one
-  /// twelfth,
-  ///        and unless ok or wrong_clock.
+  ///        twelfth, and unless ok or wrong_clock.
   /// @return ok: within one eighth; wrong_clock; bad_argument: osc_hz too low; else as begin().
   ROIO_NODISCARD Status check_clock(const Mcp2515Config& config, uint32_t osc_hz,
                                     uint32_t& measured_hz);
@@ -320,7 +319,7 @@ class Mcp2515 {
 
   static Mcp2515State state_of(uint8_t error_flags);
 
-  // single accesses
+  // the chip's registers
   void open(Transaction& transaction, Instruction instruction, Register address);
   uint8_t read_register(Register address);
   void write_register(Register address, uint8_t value);
@@ -360,6 +359,7 @@ class Mcp2515 {
 
   // looking after the chip
   void tend(bool looked);
+  void check_soon();
   void check_chip();
   bool diagnose(uint8_t errors);
   void lose_chip();
@@ -382,6 +382,14 @@ class Mcp2515 {
 
 }  // namespace roio
 
-#include <roio/mcp2515_impl.hpp>
+/// A member function of the driver, without its template arguments each time.
+#define ROIO_MCP2515_MEMBER(Type)                                             \
+  template <typename Port, uint8_t RxQueue, uint8_t TxQueue, typename Traits> \
+  Type Mcp2515<Port, RxQueue, TxQueue, Traits>
+
+#include <roio/mcp2515_receive.hpp>
+#include <roio/mcp2515_send.hpp>
+#include <roio/mcp2515_start.hpp>
+#include <roio/mcp2515_watch.hpp>
 
 #endif

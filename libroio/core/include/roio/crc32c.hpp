@@ -80,6 +80,9 @@ class Crc32c {
 
   void add(uint8_t byte) { register_ = detail::crc32c_step(register_, byte); }
   uint32_t value() const { return ~register_; }
+  /// Whether the last four bytes are the sum, as take_byte() gives it, of all before them: then the
+  /// register is the same whatever these are.
+  bool ends_with_sum() const { return register_ == UINT32_C(0xB798B438); }
   /// The value's bytes one after the other, lowest first. Ends the sum.
   uint8_t take_byte() {
     const uint8_t byte = static_cast<uint8_t>(~register_);

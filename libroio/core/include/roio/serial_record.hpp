@@ -161,11 +161,13 @@ class RecordReader {
     // What changes with each byte is kept out of memory: at 1 Mbit/s one comes every 160 cycles.
     uint8_t length = length_;
     uint8_t block = block_;
-    uint8_t before = length;
+    Crc32c check = check_;
     uint8_t left = count;
+    uint8_t* next = buffer_ + length;
     Event event = Event::none;
     if (left != 0 && state_ == State::ended) {
       length = 0;
+      next = buffer_;
       block = 0;
       state_ = State::empty;
     }
@@ -188,21 +190,23 @@ class RecordReader {
         if (state_ == State::empty) {
           state_ = State::inside;
           checked_ = expected_;
-          check_ = Crc32c(expected_);
-          before = 0;
+          check = Crc32c(expected_);
           continue;
         }
       }
       if (length == sizeof buffer_) {
         state_ = State::broken;
         length = 0;
+        next = buffer_;
       }
-      buffer_[length++] = byte;
+      check.add(byte);
+      *next++ = byte;
+      ++length;
     }
-    add_to_check(before, length);
     count = static_cast<uint8_t>(count - left);
     length_ = length;
     block_ = block;
+    check_ = check;
     return event;
   }
 
@@ -211,15 +215,11 @@ class RecordReader {
     Crc32c check = check_;
     if (session != checked_) {
       check = Crc32c(session);
-      for (uint8_t i = 0; i < length(); ++i) {
+      for (uint8_t i = 0; i < length_; ++i) {
         check.add(buffer_[i]);
       }
     }
-    const uint8_t* const tail = buffer_ + length();
-    const uint32_t value = check.value();
-    return tail[0] == static_cast<uint8_t>(value) && tail[1] == static_cast<uint8_t>(value >> 8) &&
-           tail[2] == static_cast<uint8_t>(value >> 16) &&
-           tail[3] == static_cast<uint8_t>(value >> 24);
+    return check.ends_with_sum();
   }
   const uint8_t* body() const { return buffer_; }
   /// Without the check.
@@ -232,21 +232,6 @@ class RecordReader {
     broken,  // of something that is too long to be one; the buffer holds nonsense
     ended,   // the buffer is the reader's user's
   };
-
-  /// The buffer has grown. The last bytes that it has may be the check itself.
-  void add_to_check(uint8_t before, uint8_t now) {
-    if (now <= check_length) {
-      return;
-    }
-    uint8_t from = before > check_length ? static_cast<uint8_t>(before - check_length) : uint8_t{0};
-    const uint8_t to = static_cast<uint8_t>(now - check_length);
-    Crc32c check = check_;
-    const uint8_t* next = buffer_ + from;
-    for (; from < to; ++from) {
-      check.add(*next++);
-    }
-    check_ = check;
-  }
 
   /// Something ends, here.
   Event end(uint8_t length, uint8_t block) {
@@ -261,7 +246,7 @@ class RecordReader {
   State state_;
   uint32_t expected_;
   uint32_t checked_;  // the session that check_ is for
-  Crc32c check_;      // of all that is in the buffer but for the last check_length bytes
+  Crc32c check_;      // of all that is in the buffer
   uint8_t buffer_[max_body + check_length];
 };
 

@@ -105,8 +105,7 @@ class Bus {
   /// of an extended identifier 0) pass normal ones that still wait. A sender does not receive its
   /// own frames.
   /// @param frames each is_valid() and not an error report, else throws Errc::bad_frame naming it
-  /// and
-  ///        nothing is sent.
+  ///        and nothing is sent.
   /// @return ok when all went; otherwise the first `count` went.
   virtual Transfer send(std::span<const Frame> frames, Timeout timeout) = 0;
 

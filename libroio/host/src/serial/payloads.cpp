@@ -1,38 +1,38 @@
 #include "serial/payloads.hpp"
 
 #include <array>
+#include <roio/serial_record.hpp>
 
 namespace roio::serial {
 namespace {
 
-void append32(std::vector<std::uint8_t>& bytes, std::uint32_t value) {
-  for (int shift = 24; shift >= 0; shift -= 8) {
-    bytes.push_back(static_cast<std::uint8_t>(value >> shift));
-  }
+std::vector<std::uint8_t> bytes_of(const Body& body) {
+  return {body.bytes(), body.bytes() + body.length()};
 }
 
 }  // namespace
 
 std::vector<std::uint8_t> speed_payload(std::uint32_t rate_bps) {
-  std::vector<std::uint8_t> payload;
-  append32(payload, rate_bps);
-  return payload;
+  Body payload;
+  payload.put32(rate_bps);
+  return bytes_of(payload);
 }
 
 std::vector<std::uint8_t> bus_payload(std::uint32_t bitrate_bps, BridgeMode mode) {
-  std::vector<std::uint8_t> payload;
-  append32(payload, bitrate_bps);
-  payload.push_back(static_cast<std::uint8_t>(mode));
-  return payload;
+  Body payload;
+  payload.put32(bitrate_bps);
+  payload.put(static_cast<std::uint8_t>(mode));
+  return bytes_of(payload);
 }
 
 std::vector<std::uint8_t> filter_payload(const std::vector<Rule>& rules) {
-  std::vector<std::uint8_t> payload{static_cast<std::uint8_t>(rules.size())};
+  Body payload;
+  payload.put(static_cast<std::uint8_t>(rules.size()));
   for (const Rule& rule : rules) {
-    append32(payload, rule.match);
-    append32(payload, rule.mask);
+    payload.put32(rule.match);
+    payload.put32(rule.mask);
   }
-  return payload;
+  return bytes_of(payload);
 }
 
 std::vector<std::uint8_t> echo_payload(unsigned number) {

@@ -1,0 +1,138 @@
+/// Mcp2515, receiving: how frames come out of the chip in the order in which they were on the bus.
+/// Included by mcp2515.hpp.
+#ifndef ROIO_MCP2515_RECEIVE_HPP
+#define ROIO_MCP2515_RECEIVE_HPP
+
+#include <roio/mcp2515.hpp>
+
+namespace roio {
+
+/// Whether a frame waits in the chip, as far as is known or can be seen. A line that is low is no
+/// frame yet: it may be stuck, or a spike.
+/// @param looked whether READ STATUS has been read in this call.
+ROIO_MCP2515_MEMBER(bool)::find_received(bool& looked) {
+  if (quick_ == 0 && !looked && (!Port::has_interrupt_line || port_.interrupt_line_is_low())) {
+    look();
+    looked = true;
+  }
+  return quick_ != 0;
+}
+
+/// Takes the older frame out of the chip. There must be one.
+/// @return whether it is one for the program.
+ROIO_MCP2515_MEMBER(bool)::fetch(Mcp2515Frame& frame) {
+  if (!read_rx_buffer((quick_ & QuickStatus::rx0) != 0 && !rx1_is_older_, frame)) {
+    return false;
+  }
+  const bool wanted = Traits::all_kinds || Traits::wants(frame);
+  count(wanted ? counters_.received : counters_.foreign);
+  return wanted;
+}
+
+/// Reads a buffer, which frees it, and looks what has come meanwhile.
+///
+/// The order of two full buffers is in no register; it follows from what was seen when. RXB0 is
+/// filled first, RXB1 only while RXB0 is full. So of two full buffers RXB0 is the older one, unless
+/// RXB1 was full already when RXB0 was freed. Whether it was, shows right after: a frame takes
+/// longer on the bus than the look does, so at most one can have come in between, and that one went
+/// to RXB0. Nothing may interrupt the two. The look also tells that the chip was there all the
+/// while, and it is the next call's first.
+/// With an interrupt line: a buffer that is full holds it low, so a line that is high before the
+/// buffer is freed tells of a chip that was reset or fell off; one that is high after it, that
+/// nothing more is there, and spares the look.
+/// @param first RXB0, else RXB1.
+/// @return false: the chip was lost meanwhile, or the line says so; the frame cannot be trusted.
+ROIO_MCP2515_MEMBER(bool)::read_rx_buffer(bool first, Mcp2515Frame& frame) {
+  bool trusted = true;
+  bool looks = true;
+  uint8_t quick = 0;
+  {
+    Transaction transaction(port_);
+    transaction.exchange(mcp2515::read_rx(first));
+    transaction.receive(frame.bytes, Mcp2515Frame::head_length);
+    frame.limit_length();
+    // Only as many as the frame has.
+    if (frame.length() != 0) {
+      transaction.receive(frame.data(), frame.length());
+    }
+    trusted = !Port::has_interrupt_line || port_.interrupt_line_is_low();
+    typename Port::Uninterrupted together(port_);
+    transaction.restart();
+    looks = !Port::has_interrupt_line || !trusted || port_.interrupt_line_is_low();
+    if (looks) {
+      transaction.exchange(static_cast<uint8_t>(Instruction::read_status));
+      quick = transaction.exchange(0);
+    }
+  }
+  if (looks) {
+    // Once only: the order follows from this very look, and that the buffer was freed.
+    note(quick, 1);
+  } else {
+    quick_ = 0;
+  }
+  rx1_is_older_ = 0;
+  if (quick_ != 0) {
+    rx1_is_older_ = first ? quick_ & QuickStatus::rx1 : 0;
+    // Perhaps both were full for a while, and a third frame was lost: to be looked at soon.
+    check_soon();
+  }
+  trusted = trusted && running_;
+  if (!trusted) {
+    count(counters_.discarded);
+  }
+  return trusted;
+}
+
+ROIO_MCP2515_MEMBER(Status)::receive(Frame& frame) {
+  Mcp2515Frame bytes;
+  const Status status = receive(bytes);
+  if (status == Status::ok) {
+    frame = mcp2515::from_chip(bytes);
+  }
+  return status;
+}
+
+ROIO_MCP2515_MEMBER(Status)::receive(Mcp2515Frame& frame) {
+  if (rx_queue_.empty() && RxQueue > 0) {
+    poll();
+  }
+  if (!rx_queue_.empty()) {
+    frame = rx_queue_.front();
+    rx_queue_.pop();
+    return Status::ok;
+  }
+  if (!running_) {
+    return Status::no_chip;
+  }
+  bool received = false;
+  if (RxQueue == 0) {
+    bool looked = false;
+    // As many as the chip holds, so that frames for others keep nobody here.
+    for (uint8_t tries = 2; tries != 0 && !received && find_received(looked); --tries) {
+      received = fetch(frame);
+      looked = true;
+    }
+    // Without a line it has looked by now, in one way or the other.
+    tend(looked || !Port::has_interrupt_line);
+  }
+  return received ? Status::ok : running_ ? Status::empty : Status::no_chip;
+}
+
+ROIO_MCP2515_MEMBER(Status)::poll() {
+  if (!running_) {
+    return Status::no_chip;
+  }
+  bool looked = false;
+  for (uint8_t i = 0; i < RxQueue + 2U && !rx_queue_.full() && find_received(looked); ++i) {
+    if (fetch(rx_queue_.next())) {
+      rx_queue_.commit();
+    }
+    looked = true;
+  }
+  tend(looked);
+  return running_ ? Status::ok : Status::no_chip;
+}
+
+}  // namespace roio
+
+#endif

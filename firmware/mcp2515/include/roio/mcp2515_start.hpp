@@ -1,0 +1,240 @@
+/// Mcp2515, starting: begin(), what else resets the chip or changes its mode, and check_clock().
+/// Included by mcp2515.hpp.
+#ifndef ROIO_MCP2515_START_HPP
+#define ROIO_MCP2515_START_HPP
+
+#include <roio/mcp2515.hpp>
+
+namespace roio {
+
+namespace mcp2515 {
+constexpr uint16_t pause_us = 200;  ///< 128 clocks (8.1) of any oscillator above 640 kHz.
+constexpr uint8_t pauses = 250;     ///< 50 ms: one frame at 5 kbit/s, and 11 bits.
+
+/// Sent from the chip to itself to time its oscillator; no five equal bits up to the CRC.
+constexpr uint32_t clock_frame_id = UINT32_C(0x0AAAAAAA);
+constexpr uint8_t clock_frame_data = 0x55;
+constexpr uint16_t clock_frame_bits = 131;
+constexpr uint8_t clock_frames = 3;
+constexpr uint8_t all_buffers = 7;            ///< In RTS.
+constexpr uint32_t slowest_osc_hz = 1000000;  ///< The chip takes 1 to 40 MHz.
+constexpr uint32_t clock_timeout_us = 20000;
+constexpr uint8_t slowest_clock_factor = 12;  ///< 4 MHz told 40, and some more.
+constexpr uint8_t clock_tolerance = 8;  ///< One part in so many; crystals in use are 1 in 4 apart.
+}  // namespace mcp2515
+
+/// Has the chip enter a mode, and sees it there: configuration mode by a reset, which is repeated
+/// because one that comes before the oscillator runs is lost.
+/// @param control what CANCTRL is to be.
+ROIO_MCP2515_MEMBER(bool)::reach(uint8_t control) {
+  using mcp2515::Control;
+  write_register(Register::canctrl, control);
+  uint8_t pauses = mcp2515::pauses;
+  do {
+    if (control == Control::after_reset) {
+      Transaction transaction(port_);
+      transaction.exchange(static_cast<uint8_t>(Instruction::reset));
+    }
+    port_.pause(mcp2515::pause_us);
+    if (((read_register(Register::canstat) ^ control) & Control::mode_mask) == 0) {
+      return true;
+    }
+  } while (--pauses != 0);
+  return false;
+}
+
+/// Writes filters, masks and timing, and reads them back.
+/// @return 0 when all are as they have to be.
+ROIO_MCP2515_MEMBER(uint8_t)::exchange_setup(const Mcp2515Config& config) {
+  constexpr uint8_t block_length = 12;
+  constexpr uint8_t blocks_end = 0x30;
+  constexpr uint8_t write = static_cast<uint8_t>(Instruction::write);
+  constexpr uint8_t read = static_cast<uint8_t>(Instruction::read);
+  uint8_t instruction = write;
+  for (;;) {
+    uint8_t differences = 0;  // what a chip that is written to answers is nothing
+    uint8_t address = 0;
+    do {
+      Transaction transaction(port_);
+      open(transaction, static_cast<Instruction>(instruction), static_cast<Register>(address));
+      do {
+        const uint8_t byte = config[address];
+        differences = static_cast<uint8_t>(differences | (transaction.exchange(byte) ^ byte));
+        ++address;
+      } while ((address & 0x0FU) != block_length);
+      address = static_cast<uint8_t>(address + 0x10U - block_length);
+    } while (address != blocks_end);
+    if (instruction == read) {
+      return differences;
+    }
+    instruction = read;
+  }
+}
+
+/// Writes what the registers have to be, and reads it back.
+ROIO_MCP2515_MEMBER(bool)::configure(const Mcp2515Config& config) {
+  using mcp2515::Interrupt;
+  using mcp2515::RxControl;
+  constexpr uint8_t rx0 = RxControl::by_filters | RxControl::rollover;
+  write_register(Register::rxb0ctrl, rx0);
+  bool right = (read_register(Register::rxb0ctrl) & RxControl::settings) == rx0;
+  for (uint8_t buffer = mcp2515::urgent_buffer; Traits::reports_outcomes && buffer != 0;
+       buffer >>= 1) {
+    write_register(mcp2515::txbctrl(buffer), order().level_of(buffer));
+    right = right && read_register(mcp2515::txbctrl(buffer)) == order().level_of(buffer);
+  }
+  right = right && exchange_setup(config) == 0;
+  if (Port::has_interrupt_line) {
+    constexpr uint8_t received = Interrupt::rx0 | Interrupt::rx1;
+    write_register(Register::caninte, received);
+    right = right && read_register(Register::caninte) == received;
+  }
+  // The three TXnIF are set and never cleared, so that every READ STATUS shows whether the chip
+  // still knows what it was told.
+  write_register(Register::canintf, Interrupt::tx_any);
+  return right && read_quick_status() == QuickStatus::txif;
+}
+
+/// @return whether the chip is there, and in configuration mode.
+ROIO_MCP2515_MEMBER(bool)::reset_chip() {
+  forget_chip();
+  return reach(mcp2515::Control::after_reset);
+}
+
+ROIO_MCP2515_MEMBER(Status)::begin(const Mcp2515Config& config) {
+  using mcp2515::Control;
+  if (!config.timing_is_valid()) {
+    return Status::bad_timing;
+  }
+  const uint8_t mode = config.control() & Control::mode_mask;
+  if (mode == static_cast<uint8_t>(mcp2515::Mode::configuration) ||
+      (!Traits::reports_outcomes && (config.control() & Control::one_shot) != 0)) {
+    return Status::bad_argument;
+  }
+  return start(config);
+}
+
+ROIO_MCP2515_MEMBER(Status)::start(const Mcp2515Config& config) {
+  count_what_is_forgotten();
+  if (!reset_chip() || !configure(config)) {
+    return Status::no_chip;
+  }
+  control_ = config.control();
+  if (!reach(control_)) {
+    // Not later either, when nobody expects it any more.
+    write_register(Register::canctrl, mcp2515::Control::after_reset);
+    return Status::wrong_mode;
+  }
+  running_ = true;
+  return Status::ok;
+}
+
+ROIO_MCP2515_MEMBER(Status)::change_mode(mcp2515::Mode mode) {
+  using mcp2515::Control;
+  if (mode == mcp2515::Mode::configuration) {
+    return Status::bad_argument;
+  }
+  if (!running_) {
+    return Status::no_chip;
+  }
+  const uint8_t control =
+      static_cast<uint8_t>((control_ & ~Control::mode_mask) | static_cast<uint8_t>(mode));
+  if (!reach(control)) {
+    stop();
+    return Status::wrong_mode;
+  }
+  control_ = control;
+  return Status::ok;
+}
+
+ROIO_MCP2515_MEMBER(Status)::stop() {
+  count_what_is_forgotten();
+  return reset_chip() ? Status::ok : Status::no_chip;
+}
+
+/// Losses that the chip knows of, and frames that nobody has read.
+ROIO_MCP2515_MEMBER(void)::count_what_is_forgotten() {
+  if (!Traits::diagnoses || !running_) {
+    return;
+  }
+  check_chip();
+  if (running_) {
+    look();
+    counters_.discarded += (quick_ & QuickStatus::rx0) != 0 ? 1 : 0;
+    counters_.discarded += (quick_ & QuickStatus::rx1) != 0 ? 1 : 0;
+  }
+}
+
+ROIO_MCP2515_MEMBER(Status)::check_clock(const Mcp2515Config& config, uint32_t osc_hz,
+                                         uint32_t& measured_hz) {
+  using mcp2515::Control;
+  measured_hz = 0;
+  if (osc_hz < mcp2515::slowest_osc_hz) {
+    return Status::bad_argument;
+  }
+  if (!config.timing_is_valid()) {
+    return Status::bad_timing;
+  }
+  if (!reset_chip() || !configure(config)) {
+    return Status::no_chip;
+  }
+  if (!reach(static_cast<uint8_t>(mcp2515::Mode::loopback) | Control::clock_out)) {
+    return Status::wrong_mode;
+  }
+  const uint32_t clocks =
+      UINT32_C(1) * mcp2515::clock_frames * mcp2515::clock_frame_bits * config.clocks_per_bit();
+  const uint32_t expected_us = clocks / (osc_hz / 1000U) * 1000U;
+  load_clock_frames();
+  const uint32_t limit_us = mcp2515::clock_timeout_us + mcp2515::slowest_clock_factor * expected_us;
+  const uint32_t elapsed_us = time_clock_frames(limit_us);
+  // Also ends what may still be under way.
+  if (!reach(Control::after_reset) || elapsed_us == 0) {
+    return Status::no_chip;
+  }
+  if (elapsed_us >= limit_us) {
+    return Status::wrong_clock;
+  }
+  const uint32_t measured_khz = clocks * 100U / elapsed_us * 10U;
+  const uint32_t told_khz = osc_hz / 1000U;
+  const uint32_t difference =
+      measured_khz > told_khz ? measured_khz - told_khz : told_khz - measured_khz;
+  measured_hz = measured_khz * 1000U;
+  return difference <= told_khz / mcp2515::clock_tolerance ? Status::ok : Status::wrong_clock;
+}
+
+/// One and the same frame into all three transmit buffers.
+ROIO_MCP2515_MEMBER(void)::load_clock_frames() {
+  for (uint8_t buffer = mcp2515::urgent_buffer; buffer != 0; buffer >>= 1) {
+    Frame frame = {mcp2515::clock_frame_id, FrameKind::extended, max_data_length, {}};
+    for (uint8_t& byte : frame.data) {
+      byte = mcp2515::clock_frame_data;
+    }
+    const Mcp2515Frame bytes = mcp2515::to_chip(frame);
+    Transaction transaction(port_);
+    transaction.exchange(mcp2515::load_tx(buffer));
+    transaction.send(bytes.bytes, sizeof bytes.bytes);
+  }
+}
+
+/// Sends them, and waits until all are gone.
+/// @return how long that took, or some time from limit_us on.
+ROIO_MCP2515_MEMBER(uint32_t)::time_clock_frames(uint32_t limit_us) {
+  constexpr uint8_t requested =
+      QuickStatus::txreq(1) | QuickStatus::txreq(2) | QuickStatus::txreq(4);
+  {
+    Transaction transaction(port_);
+    transaction.exchange(mcp2515::request_to_send(mcp2515::all_buffers));
+  }
+  const uint32_t start = port_.microseconds();
+  uint32_t elapsed_us = 0;
+  // A clock that stands still (interrupts are off) must not keep anybody here: a look takes 2 us.
+  uint32_t looks = limit_us / 2U;
+  do {
+    elapsed_us = port_.microseconds() - start;
+  } while ((read_quick_status() & requested) != 0 && elapsed_us < limit_us && --looks != 0);
+  return elapsed_us;
+}
+
+}  // namespace roio
+
+#endif

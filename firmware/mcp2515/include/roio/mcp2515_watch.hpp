@@ -1,0 +1,179 @@
+/// Mcp2515, looking after the chip: its registers, what READ STATUS shows, errors on the bus, and
+/// how a chip is noticed that was reset or is not there. Included by mcp2515.hpp.
+#ifndef ROIO_MCP2515_WATCH_HPP
+#define ROIO_MCP2515_WATCH_HPP
+
+#include <roio/mcp2515.hpp>
+
+namespace roio {
+
+namespace mcp2515 {
+constexpr uint8_t calls_between_checks = 64;
+constexpr uint8_t calls_at_most = 192;  ///< Where there is always a frame to be read.
+}  // namespace mcp2515
+
+// --- the chip's registers ------------------------------------------------------------------------
+
+ROIO_MCP2515_MEMBER(void)::open(Transaction& transaction, Instruction instruction,
+                                Register address) {
+  transaction.exchange(static_cast<uint8_t>(instruction));
+  transaction.exchange(static_cast<uint8_t>(address));
+}
+
+ROIO_MCP2515_MEMBER(uint8_t)::read_register(Register address) {
+  Transaction transaction(port_);
+  open(transaction, Instruction::read, address);
+  return transaction.exchange(0);
+}
+
+ROIO_MCP2515_MEMBER(void)::write_register(Register address, uint8_t value) {
+  Transaction transaction(port_);
+  open(transaction, Instruction::write, address);
+  transaction.exchange(value);
+}
+
+ROIO_MCP2515_MEMBER(void)::modify_register(Register address, uint8_t mask, uint8_t value) {
+  Transaction transaction(port_);
+  open(transaction, Instruction::bit_modify, address);
+  transaction.exchange(mask);
+  transaction.exchange(value);
+}
+
+ROIO_MCP2515_MEMBER(uint8_t)::read_quick_status() {
+  Transaction transaction(port_);
+  transaction.exchange(static_cast<uint8_t>(Instruction::read_status));
+  return transaction.exchange(0);
+}
+
+ROIO_MCP2515_MEMBER(void)::read_error_counters(uint8_t& transmit, uint8_t& receive) {
+  transmit = read_register(Register::tec);
+  receive = read_register(Register::rec);
+}
+
+// --- what READ STATUS shows ----------------------------------------------------------------------
+
+/// The three TXnIF are set, and the chip sends nothing but what it was told to. A chip that was
+/// reset, and lines stuck at 0 or 1, look different; but for one that is at 1 when all buffers are
+/// in use: there is no mode 7, which CANSTAT would have then.
+ROIO_MCP2515_MEMBER(bool)::is_plausible(uint8_t quick) {
+  using mcp2515::Control;
+  if (quick == QuickStatus::everything &&
+      (read_register(Register::canstat) & Control::mode_mask) == Control::mode_mask) {
+    return false;
+  }
+  return (quick & static_cast<uint8_t>(~(QuickStatus::any_rx | pending_))) == QuickStatus::txif;
+}
+
+/// Reads READ STATUS and takes in what it shows.
+ROIO_MCP2515_MEMBER(void)::look() {
+  note(read_quick_status(), 2);
+}
+
+/// Takes in what READ STATUS showed; nonsense tells of a lost chip.
+/// @param tries 2 where nonsense may as well come from a spike on the wires: then once more.
+ROIO_MCP2515_MEMBER(void)::note(uint8_t quick, uint8_t tries) {
+  while (!is_plausible(quick)) {
+    if (--tries == 0) {
+      lose_chip();
+      return;
+    }
+    quick = read_quick_status();
+  }
+  quick_ = quick & QuickStatus::any_rx;
+  settle(quick);
+}
+
+// --- errors and losses ---------------------------------------------------------------------------
+
+/// What is done at the end of every call that has time.
+/// @param looked whether READ STATUS has been read in this call.
+ROIO_MCP2515_MEMBER(void)::tend(bool looked) {
+  ++calls_;
+  // When there is time, and at the latest when there has been none for long.
+  const bool check =
+      calls_ >= mcp2515::calls_between_checks && (quick_ == 0 || calls_ >= mcp2515::calls_at_most);
+  // A line may keep silent for ever, and poll() alone does not receive.
+  const bool must_look = check || !tx_queue_.empty() || requests_.aborting() ||
+                         (Traits::reports_outcomes && pending_ != 0);
+  if (must_look && !looked && running_) {
+    look();
+  }
+  if (!tx_queue_.empty()) {
+    pump();
+  }
+  if (check && running_) {
+    calls_ = 0;
+    check_chip();
+  }
+}
+
+/// The next tend() that has time checks the chip.
+ROIO_MCP2515_MEMBER(void)::check_soon() {
+  calls_ |= mcp2515::calls_between_checks;
+}
+
+/// Looks at the error flags, and whether the chip is what begin() made of it.
+ROIO_MCP2515_MEMBER(void)::check_chip() {
+  using mcp2515::ErrorFlag;
+  const uint8_t errors = read_register(Register::eflg);
+  if (Traits::diagnoses && !diagnose(errors)) {
+    lose_chip();
+    return;
+  }
+  const uint8_t overflow = errors & ErrorFlag::any_overflow;
+  if (overflow != 0) {
+    count(counters_.overflows);
+    write_register(Register::eflg, 0);  // no other bit can be written
+  }
+}
+
+/// @return whether the chip is what begin() made of it.
+ROIO_MCP2515_MEMBER(bool)::diagnose(uint8_t errors) {
+  using mcp2515::Interrupt;
+  const uint8_t flags = read_register(Register::canintf);
+  const uint8_t status = read_register(Register::canstat);
+  if ((flags & Interrupt::tx_any) != Interrupt::tx_any ||
+      ((status ^ control_) & mcp2515::Control::mode_mask) != 0) {
+    return false;
+  }
+  if ((flags & Interrupt::message_error) != 0) {
+    count(counters_.message_errors);
+    modify_register(Register::canintf, Interrupt::message_error, 0);
+  }
+  if ((errors & ~error_flags_ & mcp2515::ErrorFlag::bus_off) != 0) {
+    count(counters_.bus_offs);
+  }
+  error_flags_ = errors;
+  return true;
+}
+
+ROIO_MCP2515_MEMBER(void)::lose_chip() {
+  if (running_) {
+    count(counters_.chip_losses);
+  }
+  forget_chip();
+}
+
+/// The chip has no memory of what it was told. What it had to send may or may not have gone out.
+ROIO_MCP2515_MEMBER(void)::forget_chip() {
+  running_ = false;
+  quick_ = 0;
+  rx1_is_older_ = 0;
+  requests_.set_aborting(false);
+  error_flags_ = 0;
+  end(pending_, TxOutcome::unknown);
+  pending_ = 0;
+}
+
+ROIO_MCP2515_MEMBER(Mcp2515State)::state_of(uint8_t error_flags) {
+  using mcp2515::ErrorFlag;
+  return (error_flags & ErrorFlag::bus_off) != 0 ? Mcp2515State::bus_off
+         : (error_flags & (ErrorFlag::rx_passive | ErrorFlag::tx_passive)) != 0
+             ? Mcp2515State::passive
+         : (error_flags & ErrorFlag::warning) != 0 ? Mcp2515State::warning
+                                                   : Mcp2515State::active;
+}
+
+}  // namespace roio
+
+#endif
