@@ -54,6 +54,30 @@ AvrImage image_for(const BoardModel& model, const std::filesystem::path& elf) {
   return image;
 }
 
+// What no wiring of a chip can be.
+void check_wiring(const BoardModel& model, const BoardOptions& options) {
+  const auto check_free = [&](const std::string& what, int pin) {
+    const std::array<std::pair<McuPin, const char*>, 3> taken{
+        {{model.mosi, "MOSI"}, {model.miso, "MISO"}, {model.sck, "SCK"}}};
+    for (const auto& [of_spi, name] : taken) {
+      if (mcu_pin(model, pin) == of_spi) {
+        throw std::invalid_argument(what + " cannot be on pin " + pin_name(model.kind, pin) +
+                                    ", which is SPI's " + name + " on a " + model.name);
+      }
+    }
+  };
+  const int select = options.chip_select_pin;
+  check_free("chip select", select);
+  if (!options.interrupt_pin) {
+    return;
+  }
+  check_free("INT", *options.interrupt_pin);
+  if (mcu_pin(model, *options.interrupt_pin) == mcu_pin(model, select)) {
+    throw std::invalid_argument("chip select and INT cannot both be on pin " +
+                                pin_name(model.kind, select));
+  }
+}
+
 }  // namespace
 
 // The AVR, what is around it, and how it keeps in step with the bus.
@@ -158,10 +182,7 @@ Board::Machine::Machine(CanBus& bus, BoardKind kind, const std::filesystem::path
       options_(options),
       origin_(bus.now()),
       pins_(model_.pins.size()) {
-  (void)mcu_pin(options.chip_select_pin);
-  if (options.interrupt_pin) {
-    (void)mcu_pin(*options.interrupt_pin);
-  }
+  check_wiring(model_, options);
   if (model_.has_usb) {
     auto usb = std::make_unique<UsbSerial>(core);
     usb->on_violation([this](const char* what) { violation(what); });
@@ -365,9 +386,12 @@ void Board::Machine::set_chip_fault(SpiWire::Fault fault) {
   }
 }
 
-// The same one again and again is noted once.
 void Board::Machine::violation(const char* what) {
-  if (violations.empty() || violations.back().what != what) {
+  const auto noted = std::find_if(violations.begin(), violations.end(),
+                                  [&](const Mcp2515Violation& one) { return one.what == what; });
+  if (noted != violations.end()) {
+    ++noted->times;
+  } else {
     violations.push_back({time_of(core.effect_cycle()), what});
   }
 }
@@ -375,11 +399,7 @@ void Board::Machine::violation(const char* what) {
 // --- pins ----------------------------------------------------------------------------------------
 
 McuPin Board::Machine::mcu_pin(int pin) const {
-  if (pin < 0 || static_cast<std::size_t>(pin) >= model_.pins.size()) {
-    throw std::invalid_argument(std::string("a ") + model_.name + " has no pin " +
-                                std::to_string(pin));
-  }
-  return model_.pins[static_cast<std::size_t>(pin)];
+  return sim::mcu_pin(model_, pin);
 }
 
 // Some pins have two numbers: the first is the one that counts.
@@ -429,11 +449,7 @@ Board::Machine::Serial& Board::Machine::serial_slot(int number) {
 }
 
 unsigned Board::Machine::adc_channel(int channel) const {
-  if (channel < 0 || static_cast<std::size_t>(channel) >= model_.analog_channels.size()) {
-    throw std::invalid_argument(std::string("a ") + model_.name + " has no analog input A" +
-                                std::to_string(channel));
-  }
-  return model_.analog_channels[static_cast<std::size_t>(channel)];
+  return sim::adc_channel(model_, channel);
 }
 
 // --- the board -----------------------------------------------------------------------------------
@@ -494,8 +510,7 @@ int Board::pins() const {
 }
 
 int Board::analog_pin(int channel) const {
-  (void)machine_->adc_channel(channel);
-  return machine_->model().first_analog_pin + channel;
+  return sim::analog_pin(kind(), channel);
 }
 
 void Board::set_pin(int pin, bool high) {
