@@ -9,6 +9,9 @@
       before, from the same sketch, library and tools, is not built again. Prints where the image is.
       roio-sim and scripts/flash build so.
 
+  arduino_image.py --find SKETCH
+      Prints the X/X.ino that is meant.
+
 Exit status: 0, 1 when the sketch does not build, 2 for a sketch that is not there, 128+N after signal N.
 """
 import argparse
@@ -282,6 +285,7 @@ def parse():
     parser.add_argument("image", type=pathlib.Path, nargs="?", help="the .elf to write")
     parser.add_argument("--board", choices=BOARDS, help="for a sketch of one's own")
     parser.add_argument("--library", type=pathlib.Path, help="Roio-VERSION.zip, for a sketch of one's own")
+    parser.add_argument("--find", action="store_true", help="build nothing")
     parser.add_argument("--tool", default="arduino_image", help="under which name it says something")
     parser.add_argument("--fqbn", help="the board, e.g. arduino:avr:uno")
     parser.add_argument("--builder", help="arduino-builder")
@@ -294,7 +298,7 @@ def parse():
                         help="keeps the compiled core; without --board, two builds may share it once the core "
                              "is there")
     arguments = parser.parse_args()
-    needed = ["library"] if arguments.board else [
+    needed = [] if arguments.find else ["library"] if arguments.board else [
         "image", "fqbn", "builder", "ctags", "size", "toolchain", "hardware", "cache"]
     for name in needed:
         if getattr(arguments, name) is None:
@@ -316,9 +320,14 @@ def main():
     arguments = parse()
     catch_signals()
     try:
-        build_own(arguments) if arguments.board else build_image(arguments)
+        if arguments.find:
+            print(find_sketch(arguments.sketch))
+        elif arguments.board:
+            build_own(arguments)
+        else:
+            build_image(arguments)
     except Refused as error:
-        say(f"{arguments.tool}: {error}" if arguments.board else error)
+        say(f"{arguments.tool}: {error}" if arguments.board or arguments.find else error)
         return error.status
     except OSError as error:
         say(f"{arguments.tool}: {error.filename}: {error.strerror}" if error.filename else
