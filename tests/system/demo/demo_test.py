@@ -24,8 +24,9 @@ class DemoTest(unittest.TestCase):
         folder = tempfile.TemporaryDirectory()
         self.addCleanup(folder.cleanup)
         self.folder = pathlib.Path(folder.name)
-        for name in ("scripts", "path", "tmp", "bus", "build/bin", "build/release/firmware"):
+        for name in ("scripts", "path", "tmp", "build/bin", "build/release/firmware"):
             (self.folder / name).mkdir(parents=True)
+        (self.folder / "bus").mkdir(mode=0o700)
         shutil.copy(SOURCE / "scripts/demo", self.folder / "scripts")
         (self.folder / "build/release/firmware/uno").symlink_to(os.environ["ROIO_IMAGES"] + "/uno")
         self.program("scripts/setup", "true")
@@ -114,6 +115,13 @@ class FailureTest(DemoTest):
         line, err = self.failure()
         self.assertEqual(line, "demo: the bridge does not answer")
         self.assertIn("--- bridge.errors\nroio-cli: nobody there\n", err)
+
+    def test_a_bridge_that_goes_away(self):
+        self.program("build/bin/roio-cli",
+                     f'[ "$2" != attach ] || {{ echo "gone" >&2; exit 1; }}; exec "{os.environ["ROIO_CLI"]}" "$@"')
+        line, err = self.failure()
+        self.assertEqual(line, 'demo: no line ": attached to " came')
+        self.assertIn("--- attached\ngone\n", err)
 
     def test_a_message_that_cannot_be_sent(self):
         self.program("build/bin/roio-cli",
