@@ -61,7 +61,7 @@ void check_wiring(const BoardModel& model, const BoardOptions& options) {
         {{model.mosi, "MOSI"}, {model.miso, "MISO"}, {model.sck, "SCK"}}};
     for (const auto& [of_spi, name] : taken) {
       if (mcu_pin(model, pin) == of_spi) {
-        throw std::invalid_argument(what + " cannot be on pin " + pin_name(model.kind, pin) +
+        throw std::invalid_argument(what + " cannot be on pin " + std::to_string(pin) +
                                     ", which is SPI's " + name + " on a " + model.name);
       }
     }

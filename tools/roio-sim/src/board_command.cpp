@@ -12,7 +12,7 @@ namespace {
 
 constexpr double supply_volts = 5;
 constexpr std::array<std::string_view, 9> verbs{"press",  "hold",  "release", "pin", "analog",
-                                               "serial", "reset", "unplug",  "plug"};
+                                                "serial", "reset", "unplug",  "plug"};
 constexpr const char* verb_list =
     "press, hold, release, pin, analog, serial, reset, unplug or plug";
 

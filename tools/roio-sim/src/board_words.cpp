@@ -66,8 +66,9 @@ Parsed<BoardWord> parse_board_word(std::string_view text) {
   const auto* const kind = std::find_if(
       kinds.begin(), kinds.end(), [&](const auto& entry) { return entry.first == word.kind_word; });
   if (kind == kinds.end()) {
-    return error_in("board", text,
-                    "uno, nano, leonardo, micro or mega before the '=', found " + quote(word.kind_word));
+    return error_in(
+        "board", text,
+        "uno, nano, leonardo, micro or mega before the '=', found " + quote(word.kind_word));
   }
   word.kind = kind->second;
   return word;

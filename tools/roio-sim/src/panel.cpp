@@ -300,7 +300,8 @@ void Panel::tell_lost_bytes() {
   };
   tell(terminal_->lost(), " lost: nobody read its serial port");
   tell(terminal_->unheard(), " lost: its serial port was unplugged");
-  tell(terminal_->garbled_by_wrong_rate(), " garbled: its serial port was set to another rate than the board's");
+  tell(terminal_->garbled_by_wrong_rate(),
+       " garbled: its serial port was set to another rate than the board's");
 }
 
 // --- what can be done to it ----------------------------------------------------------------------

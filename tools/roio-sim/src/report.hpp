@@ -36,7 +36,8 @@ class Report {
 
   virtual void servo(sim::SimTime time, const std::string& board, const std::string& pin,
                      int degrees) = 0;
-  virtual void pin(sim::SimTime time, const std::string& board, const std::string& pin, bool high) = 0;
+  virtual void pin(sim::SimTime time, const std::string& board, const std::string& pin,
+                   bool high) = 0;
   /// @param uart as Arduino counts them: 0 is Serial. @param text a line without its end, any
   /// bytes.
   virtual void serial(sim::SimTime time, const std::string& board, int uart,

@@ -136,8 +136,9 @@ std::optional<std::string> build(const Kit& kit, const BoardWish& board, int& st
     return image;
   } catch (const std::system_error& error) {
     if (error.code() == std::errc::no_such_file_or_directory) {
-      throw cli::Failure("python3 is missing, which builds sketches; on Debian: sudo apt-get install "
-                         "python3");
+      throw cli::Failure(
+          "python3 is missing, which builds sketches; on Debian: sudo apt-get install "
+          "python3");
     }
     throw;
   }

@@ -1,7 +1,7 @@
 /// Sketches in place of images: X/X.ino, or its folder, is built before the boards start.
 ///
-/// arduino_image.py does it, with the Arduino library beside it. Both lie in share/roio, next to the
-/// folder that this program is in: in an installed tree and in a build tree alike.
+/// arduino_image.py does it, with the Arduino library beside it. Both lie in share/roio, next to
+/// the folder that this program is in: in an installed tree and in a build tree alike.
 ///
 ///   PREFIX/bin/roio-sim
 ///   PREFIX/share/roio/arduino_image.py
