@@ -13,6 +13,7 @@
 #include "avr/spi.hpp"
 #include "avr/uart.hpp"
 #include "avr/usb_serial.hpp"
+#include "board/wiring.hpp"
 
 namespace roio::sim {
 namespace {
@@ -52,30 +53,6 @@ AvrImage image_for(const BoardModel& model, const std::filesystem::path& elf) {
                              std::to_string(model.flash_bytes));
   }
   return image;
-}
-
-// What no wiring of a chip can be.
-void check_wiring(const BoardModel& model, const BoardOptions& options) {
-  const auto check_free = [&](const std::string& what, int pin) {
-    const std::array<std::pair<McuPin, const char*>, 3> taken{
-        {{model.mosi, "MOSI"}, {model.miso, "MISO"}, {model.sck, "SCK"}}};
-    for (const auto& [of_spi, name] : taken) {
-      if (mcu_pin(model, pin) == of_spi) {
-        throw std::invalid_argument(what + " cannot be on pin " + std::to_string(pin) +
-                                    ", which is SPI's " + name + " on a " + model.name);
-      }
-    }
-  };
-  const int select = options.chip_select_pin;
-  check_free("chip select", select);
-  if (!options.interrupt_pin) {
-    return;
-  }
-  check_free("INT", *options.interrupt_pin);
-  if (mcu_pin(model, *options.interrupt_pin) == mcu_pin(model, select)) {
-    throw std::invalid_argument("chip select and INT cannot both be on pin " +
-                                pin_name(model.kind, select));
-  }
 }
 
 }  // namespace
