@@ -69,9 +69,10 @@ class ShowTest(SimTest):
         self.assertIn("b: can: normal, 250000 bit/s\n", out)
 
     def test_chip_select_on_another_pin_is_not_found(self):
-        status, out, err = self.run_sim("--cs", "9", "--for", "0.1", "--speed", "max",
+        status, out, err = self.run_sim("--cs", "A3", "--for", "0.1", "--speed", "max",
                                         "uno=" + UNO)
-        self.assertEqual((status, err), (0, ""))
+        self.assertEqual((status, err), (0, "roio-sim: uno: its sketch uses SPI, but not pin A3, where the chip's "
+                                            "select is; see --cs\n"))
         self.assertNotIn("can:", out)
 
 

@@ -48,6 +48,18 @@ std::set<int> spi_pins(sim::BoardKind kind) {
   return {50, 51, 52, 53};
 }
 
+int mosi_pin(sim::BoardKind kind) {
+  switch (kind) {
+    case sim::BoardKind::uno:
+      return 11;
+    case sim::BoardKind::leonardo:
+      return 16;
+    case sim::BoardKind::mega:
+      break;
+  }
+  return 51;
+}
+
 sim::BoardOptions board_options(const BoardWish& wish) {
   sim::BoardOptions options = wish.options;
   options.name = wish.name;
@@ -78,6 +90,7 @@ Panel::Panel(sim::CanBus& bus, const BoardWish& wish, std::uint32_t bitrate_bps,
       bitrate_bps_(bitrate_bps),
       report_(report),
       board_(bus, wish.kind, wish.elf, board_options(wish)),
+      select_pin_(sim::main_pin(wish.kind, wish.options.chip_select_pin)),
       state_(can_state()),
       state_shown_(state_) {
   if (wish.options.interrupt_pin) {
@@ -89,7 +102,7 @@ Panel::Panel(sim::CanBus& bus, const BoardWish& wish, std::uint32_t bitrate_bps,
 
 void Panel::watch_pins(const BoardWish& wish) {
   std::set<int> busy = spi_pins(wish.kind);
-  busy.insert(sim::main_pin(wish.kind, wish.options.chip_select_pin));
+  busy.insert(select_pin_);
   for (int number = 0; number < board_.pins(); ++number) {
     const bool is_other_number = sim::main_pin(wish.kind, number) != number;
     if (!is_other_number && !busy.contains(number)) {
@@ -261,7 +274,16 @@ void Panel::finish() {
   if (terminal_) {
     tell_lost_bytes();
   }
+  tell_unused_chip();
   tell_violations();
+}
+
+// Of a sketch that has another pin in mind nothing else is to be seen.
+void Panel::tell_unused_chip() {
+  if (board_.pin(mosi_pin(board_.kind())) && !board_.pin(select_pin_)) {
+    note(name() + ": its sketch uses SPI, but not pin " + pin_name(select_pin_) +
+         ", where the chip's select is; see --cs");
+  }
 }
 
 // Each kind once, with how often it was.

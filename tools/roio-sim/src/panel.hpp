@@ -86,6 +86,7 @@ class Panel {
   void show_terminal();
   void plug_terminal(bool in);
   void tell_lost_bytes();
+  void tell_unused_chip();
   void tell_violations();
   [[nodiscard]] CanState can_state();
   [[nodiscard]] std::string pin_name(int number) const;
@@ -96,6 +97,7 @@ class Panel {
   std::uint32_t bitrate_bps_;
   Report& report_;
   sim::Board board_;
+  int select_pin_;
   std::optional<int> interrupt_pin_;
   std::map<int, Pin> pins_;
   std::map<int, Outside> outside_;
