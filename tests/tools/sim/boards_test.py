@@ -62,6 +62,15 @@ class ShowTest(SimTest):
         )
         self.assertIn("a: can: normal, 500000 bit/s\n", out)
 
+    # Alone with a frame of another rate, its chip goes error-passive, which is no other rate.
+    def test_another_rate_is_told_once(self):
+        sim = self.sim("--rate", "250000", "--bus", "local:robot", "a:uno=" + UNO)
+        sim.wait_for("a: can: normal, 500000 bit/s")
+        sim.say("a serial ping")
+        sim.wait_for("a: can: error-passive, 500000 bit/s")
+        sim.say("quit")
+        self.assertEqual(sim.result()[2].count("its chip is set to 500000 bit/s"), 1)
+
     def test_a_crystal_of_its_own(self):
         out = self.run_sim("--crystal", "b:8000000", "--for", "0.1", "--speed", "max",
                            "a:uno=" + UNO, "b:leonardo=" + LEONARDO)[1]

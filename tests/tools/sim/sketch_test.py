@@ -139,6 +139,35 @@ class BuildTest(SketchTest):
                          (1, "", f"roio-sim: {library}: no such file; a sketch is built with it\n"))
 
 
+class ViolationTest(SketchTest):
+    # Two things that hardware does not put up with, 250 times each, in turn.
+    WRONG = """void setup() {
+  pinMode(10, OUTPUT);
+  pinMode(11, OUTPUT);
+  SPCR = _BV(SPE) | _BV(MSTR);
+  for (int i = 0; i < 250; ++i) {
+    digitalWrite(10, LOW);
+    pinMode(13, INPUT);
+    SPDR = 0;
+    while (!(SPSR & _BV(SPIF))) {}
+    digitalWrite(10, HIGH);
+    pinMode(13, OUTPUT);
+    SPDR = 0;
+    SPDR = 0;
+    while (!(SPSR & _BV(SPIF))) {}
+  }
+}
+void loop() {}
+"""
+
+    def test_each_kind_is_told_once_and_counted(self):
+        self.write("Fan.ino", self.WRONG)
+        status, _, err = self.run_fan("uno=Fan")
+        self.assertEqual((status, err), (0, "roio-sim: building Fan for uno ...\n" + "".join(
+            f"roio-sim: uno: the hardware does not put up with this: {what} (250 times)\n"
+            for what in ("SCK is not an output", "SPDR written while a byte is under way"))))
+
+
 class ToolTest(SketchTest):
     def test_no_builder(self):
         self.path_of("python3", "avr-g++", "arduino-ctags")

@@ -9,6 +9,7 @@
 #include <span>
 #include <stdexcept>
 #include <system_error>
+#include <utility>
 
 #include "record_format.hpp"
 
@@ -253,7 +254,8 @@ void Panel::look_at_chip() {
   }
   state_shown_ = state_;
   report_.can(bus_.now(), name(), state_.name, state_.bitrate_bps);
-  if (state_.bitrate_bps != 0 && state_.bitrate_bps / 1000 != bitrate_bps_ / 1000) {
+  if (state_.bitrate_bps != 0 && state_.bitrate_bps / 1000 != bitrate_bps_ / 1000 &&
+      std::exchange(other_bitrate_bps_, state_.bitrate_bps) != state_.bitrate_bps) {
     note(name() + ": its chip is set to " + std::to_string(state_.bitrate_bps) +
          " bit/s, the bus runs at " + std::to_string(bitrate_bps_) +
          " (see --rate, and --crystal)");

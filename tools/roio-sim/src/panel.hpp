@@ -105,6 +105,7 @@ class Panel {
   CanState state_;        // as it is
   CanState state_shown_;  // as it was reported
   sim::SimTime state_since_{0};
+  std::uint32_t other_bitrate_bps_ = 0;  // than the bus has, as it was told last
   bool was_in_loopback_ = false;
   std::uint64_t overflows_seen_ = 0;
   std::uint64_t overflows_ = 0;
