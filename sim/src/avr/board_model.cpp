@@ -1,6 +1,9 @@
 #include "avr/board_model.hpp"
 
+#include <algorithm>
 #include <array>
+#include <stdexcept>
+#include <string>
 
 namespace roio::sim {
 namespace {
@@ -74,6 +77,7 @@ constexpr BoardModel uno{.kind = BoardKind::uno,
                          .interrupts = uno_interrupts,
                          .ss = {'B', 2},
                          .mosi = {'B', 3},
+                         .miso = {'B', 4},
                          .sck = {'B', 5}};
 constexpr BoardModel leonardo{.kind = BoardKind::leonardo,
                               .name = "Leonardo",
@@ -89,6 +93,7 @@ constexpr BoardModel leonardo{.kind = BoardKind::leonardo,
                               .interrupts = leonardo_interrupts,
                               .ss = {'B', 0},
                               .mosi = {'B', 2},
+                              .miso = {'B', 3},
                               .sck = {'B', 1}};
 constexpr BoardModel mega{.kind = BoardKind::mega,
                           .name = "Mega",
@@ -104,6 +109,7 @@ constexpr BoardModel mega{.kind = BoardKind::mega,
                           .interrupts = mega_interrupts,
                           .ss = {'B', 0},
                           .mosi = {'B', 2},
+                          .miso = {'B', 3},
                           .sck = {'B', 1}};
 
 }  // namespace
@@ -118,6 +124,55 @@ const BoardModel& model_of(BoardKind kind) {
       break;
   }
   return mega;
+}
+
+McuPin mcu_pin(const BoardModel& model, int pin) {
+  if (pin < 0 || static_cast<std::size_t>(pin) >= model.pins.size()) {
+    throw std::invalid_argument(std::string("a ") + model.name + " has no pin " +
+                                std::to_string(pin));
+  }
+  return model.pins[static_cast<std::size_t>(pin)];
+}
+
+std::uint8_t adc_channel(const BoardModel& model, int channel) {
+  if (channel < 0 || static_cast<std::size_t>(channel) >= model.analog_channels.size()) {
+    throw std::invalid_argument(std::string("a ") + model.name + " has no analog input A" +
+                                std::to_string(channel));
+  }
+  return model.analog_channels[static_cast<std::size_t>(channel)];
+}
+
+int analog_pin(BoardKind kind, int channel) {
+  const BoardModel& model = model_of(kind);
+  (void)adc_channel(model, channel);
+  return model.first_analog_pin + channel;
+}
+
+int main_pin(BoardKind kind, int pin) {
+  const BoardModel& model = model_of(kind);
+  const auto found = std::find(model.pins.begin(), model.pins.end(), mcu_pin(model, pin));
+  return static_cast<int>(found - model.pins.begin());
+}
+
+std::string pin_name(BoardKind kind, int pin) {
+  const BoardModel& model = model_of(kind);
+  const int number = main_pin(kind, pin);
+  const int channel = number - model.first_analog_pin;
+  if (channel >= 0 && static_cast<std::size_t>(channel) < model.analog_channels.size()) {
+    return "A" + std::to_string(channel);
+  }
+  if (kind == BoardKind::leonardo) {
+    constexpr int first = 14;  // these have no printed number
+    constexpr std::array<const char*, 4> of_spi{"MISO", "SCK", "MOSI", "RXLED"};
+    constexpr int transmit_light = 30;
+    if (number >= first && number < first + static_cast<int>(of_spi.size())) {
+      return of_spi.at(static_cast<std::size_t>(number - first));
+    }
+    if (number == transmit_light) {
+      return "TXLED";
+    }
+  }
+  return std::to_string(number);
 }
 
 const char* to_string(BoardKind kind) {

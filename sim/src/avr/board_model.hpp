@@ -48,10 +48,15 @@ struct BoardModel {
   std::span<const McuInterrupt> interrupts;
   McuPin ss;
   McuPin mosi;
+  McuPin miso;
   McuPin sck;
 };
 
 const BoardModel& model_of(BoardKind kind);
+
+/// @throws std::invalid_argument: no such pin, no such analog input.
+McuPin mcu_pin(const BoardModel& model, int pin);
+std::uint8_t adc_channel(const BoardModel& model, int channel);
 
 }  // namespace roio::sim
 

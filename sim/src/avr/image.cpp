@@ -7,6 +7,7 @@
 #include <fstream>
 #include <iterator>
 #include <stdexcept>
+#include <string_view>
 
 namespace roio::sim {
 namespace {
@@ -37,6 +38,10 @@ class Reader {
     throw std::runtime_error(path_.string() + ": " + what);
   }
 
+  [[nodiscard]] bool begins_with(std::string_view text) const {
+    return text.size() <= bytes_.size() && std::equal(text.begin(), text.end(), bytes_.begin());
+  }
+
   template <class T>
   [[nodiscard]] T at(std::size_t offset) const {
     T value{};
@@ -62,10 +67,10 @@ class Reader {
 };
 
 Elf32_Ehdr read_header(const Reader& file) {
-  const auto header = file.at<Elf32_Ehdr>(0);
-  if (std::memcmp(header.e_ident, ELFMAG, SELFMAG) != 0) {
+  if (!file.begins_with({ELFMAG, SELFMAG})) {
     file.fail("is not an ELF file");
   }
+  const auto header = file.at<Elf32_Ehdr>(0);
   if (header.e_ident[EI_CLASS] != ELFCLASS32 || header.e_machine != EM_AVR) {
     file.fail("is not a program for an AVR");
   }

@@ -70,8 +70,7 @@ int Board::pins() const {
 }
 
 int Board::analog_pin(int channel) const {
-  (void)machine_->pins.adc_channel(channel);
-  return machine_->model().first_analog_pin + channel;
+  return sim::analog_pin(kind(), channel);
 }
 
 void Board::set_pin(int pin, bool high) {

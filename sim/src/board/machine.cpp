@@ -7,6 +7,7 @@
 #include "avr/image.hpp"
 #include "avr/uart.hpp"
 #include "avr/usb_serial.hpp"
+#include "board/wiring_check.hpp"
 
 namespace roio::sim {
 namespace {
@@ -58,10 +59,7 @@ Board::Machine::Machine(CanBus& bus, BoardKind kind, const std::filesystem::path
       model_(model_of(kind)),
       options_(options),
       origin_(bus.now()) {
-  (void)pins.mcu_pin(options.chip_select_pin);
-  if (options.interrupt_pin) {
-    (void)pins.mcu_pin(*options.interrupt_pin);
-  }
+  check_wiring(model_, options);
   add_serial_ports();
   connect_core();
   if (options.has_chip) {
@@ -210,9 +208,12 @@ void Board::Machine::exchanged(std::uint8_t out, std::uint8_t in) {
   });
 }
 
-// The same one again and again is noted once.
 void Board::Machine::violation(const char* what) {
-  if (violations.empty() || violations.back().what != what) {
+  const auto noted = std::find_if(violations.begin(), violations.end(),
+                                  [&](const Mcp2515Violation& one) { return one.what == what; });
+  if (noted != violations.end()) {
+    ++noted->times;
+  } else {
     violations.push_back({time_of(core.effect_cycle()), what});
   }
 }

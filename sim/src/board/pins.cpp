@@ -1,26 +1,16 @@
 #include "board/pins.hpp"
 
 #include <algorithm>
-#include <stdexcept>
-#include <string>
 #include <utility>
 
 namespace roio::sim {
 
 McuPin BoardPins::mcu_pin(int number) const {
-  if (number < 0 || static_cast<std::size_t>(number) >= model_.pins.size()) {
-    throw std::invalid_argument(std::string("a ") + model_.name + " has no pin " +
-                                std::to_string(number));
-  }
-  return model_.pins[static_cast<std::size_t>(number)];
+  return sim::mcu_pin(model_, number);
 }
 
 unsigned BoardPins::adc_channel(int channel) const {
-  if (channel < 0 || static_cast<std::size_t>(channel) >= model_.analog_channels.size()) {
-    throw std::invalid_argument(std::string("a ") + model_.name + " has no analog input A" +
-                                std::to_string(channel));
-  }
-  return model_.analog_channels[static_cast<std::size_t>(channel)];
+  return sim::adc_channel(model_, channel);
 }
 
 // Some pins have two numbers: the first is the one that counts.

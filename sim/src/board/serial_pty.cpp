@@ -18,6 +18,8 @@ constexpr double usb_bps = 12e6;
 // So much more than an interval takes is kept waiting for the board. The rest stays in the
 // terminal, where its writer sees it.
 constexpr std::size_t bytes_ahead = 16;
+// A session that its bridge has given up, or not yet, is over by then.
+constexpr SimTime longest_change = std::chrono::seconds(2);
 
 std::string target_of(const std::filesystem::path& link) {
   std::error_code not_one;
@@ -63,6 +65,46 @@ class TerminalLink {
   std::string target_;
 };
 
+// Bytes at a rate that the other end did not have: on the way from one rate to another, or because
+// a program's rate is wrong.
+class Garble {
+ public:
+  /// A new terminal: nobody knows its rate.
+  void begin() {
+    wrong_ += was_understood_ ? 0 : pending_;
+    pending_ = 0;
+    since_.reset();
+    was_understood_ = false;
+  }
+  void understood() {
+    pending_ = 0;
+    since_.reset();
+    was_understood_ = true;
+  }
+  void add(std::size_t count, SimTime now) {
+    all_ += count;
+    pending_ += count;
+    if (!since_) {
+      since_ = now;
+    }
+    if (now - *since_ >= longest_change) {
+      wrong_ += std::exchange(pending_, 0);
+    }
+  }
+
+  [[nodiscard]] std::uint64_t all() const { return all_; }
+  [[nodiscard]] std::uint64_t by_wrong_rate() const {
+    return wrong_ + (was_understood_ ? 0 : pending_);
+  }
+
+ private:
+  std::uint64_t all_ = 0;
+  std::uint64_t wrong_ = 0;
+  std::uint64_t pending_ = 0;  // since a byte came through; not in wrong_
+  std::optional<SimTime> since_;
+  bool was_understood_ = false;
+};
+
 }  // namespace
 
 class SerialPty::Line : public std::enable_shared_from_this<SerialPty::Line> {
@@ -86,6 +128,7 @@ class SerialPty::Line : public std::enable_shared_from_this<SerialPty::Line> {
       throw;
     }
     path_ = terminal_->path();
+    garble_.begin();
   }
   void unplug() {
     unheard_ += std::exchange(from_board_, {}).size();
@@ -121,17 +164,30 @@ class SerialPty::Line : public std::enable_shared_from_this<SerialPty::Line> {
   [[nodiscard]] bool is_plugged() const { return terminal_.has_value(); }
   [[nodiscard]] std::uint64_t lost() const { return lost_; }
   [[nodiscard]] std::uint64_t unheard() const { return unheard_; }
-  [[nodiscard]] std::uint64_t garbled() const { return garbled_; }
+  [[nodiscard]] const Garble& garble() const { return garble_; }
 
  private:
+  // Whether bytes between the two come through; if not, they are counted.
+  bool come_through(std::optional<double> terminal_bps, std::optional<double> board_bps,
+                    std::size_t count) {
+    if (!terminal_bps || !board_bps) {
+      return true;
+    }
+    if (rates_match(*terminal_bps, *board_bps)) {
+      garble_.understood();
+      return true;
+    }
+    garble_.add(count, bus_.now());
+    return false;
+  }
+
   // To the terminal, all that the board has sent since the last time, in one system call.
   void hand_on() {
     if (from_board_.empty()) {
       return;
     }
     const auto terminal_bps = terminal_->bitrate_bps();
-    if (terminal_bps && from_board_bps_ && !rates_match(*terminal_bps, *from_board_bps_)) {
-      garbled_ += from_board_.size();
+    if (!come_through(terminal_bps, from_board_bps_, from_board_.size())) {
       from_board_ = sampled(from_board_, *from_board_bps_, *terminal_bps);
     }
     lost_ += from_board_.size() - terminal_->write(from_board_);
@@ -157,8 +213,7 @@ class SerialPty::Line : public std::enable_shared_from_this<SerialPty::Line> {
       return;
     }
     const auto terminal_bps = terminal_->bitrate_bps();
-    if (terminal_bps && board_bps && !rates_match(*terminal_bps, *board_bps)) {
-      garbled_ += to_board_.size();
+    if (!come_through(terminal_bps, board_bps, to_board_.size())) {
       to_board_ = sampled(to_board_, *terminal_bps, *board_bps);
     }
     board_.serial_write(uart_, to_board_);
@@ -176,7 +231,7 @@ class SerialPty::Line : public std::enable_shared_from_this<SerialPty::Line> {
   std::vector<std::uint8_t> to_board_;
   std::uint64_t lost_ = 0;
   std::uint64_t unheard_ = 0;
-  std::uint64_t garbled_ = 0;
+  Garble garble_;
 };
 
 SerialPty::SerialPty(CanBus& bus, Board& board, int uart, const SerialPtyOptions& options)
@@ -209,7 +264,10 @@ std::uint64_t SerialPty::unheard() const {
   return line_->unheard();
 }
 std::uint64_t SerialPty::garbled() const {
-  return line_->garbled();
+  return line_->garble().all();
+}
+std::uint64_t SerialPty::garbled_by_wrong_rate() const {
+  return line_->garble().by_wrong_rate();
 }
 
 }  // namespace roio::sim

@@ -43,7 +43,10 @@ Mcp2515Chip::~Mcp2515Chip() {
 }
 
 void Mcp2515Chip::violation(std::string what) {
-  violations_.push_back({bus_.now(), std::move(what)});
+  ++violation_count_;
+  if (violations_.size() < most_violations) {
+    violations_.push_back({bus_.now(), std::move(what)});
+  }
 }
 
 void Mcp2515Chip::later(SimTime span, std::function<void()> action) {

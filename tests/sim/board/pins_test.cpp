@@ -1,4 +1,7 @@
 // The pins of a board, and its timers (firmware/pins.cpp, firmware/idle.cpp).
+#include <array>
+#include <stdexcept>
+
 #include "board_rig.hpp"
 
 namespace roio::test {
@@ -180,6 +183,78 @@ TEST(BoardPinNumbers, AreArduinos) {
   EXPECT_EQ(board(sim::BoardKind::uno)->pins(), 20);
   EXPECT_EQ(board(sim::BoardKind::leonardo)->pins(), 31);
   EXPECT_EQ(board(sim::BoardKind::mega)->pins(), 70);
+}
+
+TEST(BoardPinNumbers, HaveThePrintedNames) {
+  using sim::BoardKind;
+  struct Row {
+    BoardKind kind;
+    int number;
+    const char* name;
+    int first;
+    const char* why;
+  };
+  const std::array<Row, 15> rows{{
+      {BoardKind::uno, 6, "6", 6, "digital"},
+      {BoardKind::uno, 15, "A1", 15, "analog"},
+      {BoardKind::uno, 19, "A5", 19, "the last"},
+      {BoardKind::leonardo, 6, "6", 6, "the first of two numbers"},
+      {BoardKind::leonardo, 25, "6", 6, "A7, which is the same pin"},
+      {BoardKind::leonardo, 24, "4", 4, "A6"},
+      {BoardKind::leonardo, 29, "12", 12, "A11"},
+      {BoardKind::leonardo, 18, "A0", 18, "analog alone"},
+      {BoardKind::leonardo, 23, "A5", 23, "the last of these"},
+      {BoardKind::leonardo, 14, "MISO", 14, "on the SPI header"},
+      {BoardKind::leonardo, 16, "MOSI", 16, "on the SPI header"},
+      {BoardKind::leonardo, 17, "RXLED", 17, "on no header"},
+      {BoardKind::leonardo, 30, "TXLED", 30, "on no header"},
+      {BoardKind::mega, 53, "53", 53, "digital"},
+      {BoardKind::mega, 69, "A15", 69, "the last"},
+  }};
+  for (const Row& row : rows) {
+    EXPECT_EQ(sim::pin_name(row.kind, row.number), row.name) << row.why;
+    EXPECT_EQ(sim::main_pin(row.kind, row.number), row.first) << row.why;
+  }
+  EXPECT_EQ(sim::analog_pin(BoardKind::leonardo, 7), 25);
+  EXPECT_THROW((void)sim::pin_name(BoardKind::uno, 20), std::invalid_argument);
+  EXPECT_THROW((void)sim::main_pin(BoardKind::uno, -1), std::invalid_argument);
+  EXPECT_THROW((void)sim::analog_pin(BoardKind::uno, 6), std::invalid_argument);
+}
+
+TEST(BoardWiring, ThatCannotBeIsRefused) {
+  using sim::BoardKind;
+  struct Row {
+    BoardKind kind;
+    int select;
+    std::optional<int> interrupt;
+    const char* refusal;
+  };
+  const std::array<Row, 13> rows{{
+      {BoardKind::uno, 10, 2, ""},
+      {BoardKind::uno, 9, std::nullopt, ""},
+      {BoardKind::uno, 2, std::nullopt, ""},
+      {BoardKind::uno, 14, 15, ""},
+      {BoardKind::mega, 13, 12, ""},  // SPI's on an Uno
+      {BoardKind::uno, 13, 2, "chip select cannot be on pin 13, which is SPI's SCK on a Uno"},
+      {BoardKind::uno, 11, 2, "chip select cannot be on pin 11, which is SPI's MOSI on a Uno"},
+      {BoardKind::mega, 50, 2, "chip select cannot be on pin 50, which is SPI's MISO on a Mega"},
+      {BoardKind::uno, 10, 12, "INT cannot be on pin 12, which is SPI's MISO on a Uno"},
+      {BoardKind::leonardo, 10, 15, "INT cannot be on pin 15, which is SPI's SCK on a Leonardo"},
+      {BoardKind::uno, 2, 2, "chip select and INT cannot both be on pin 2"},
+      {BoardKind::uno, 10, 10, "chip select and INT cannot both be on pin 10"},
+      {BoardKind::leonardo, 6, 25, "chip select and INT cannot both be on pin 6"},
+  }};
+  for (const Row& row : rows) {
+    sim::CanBus bus;
+    std::string refusal;
+    try {
+      const sim::Board board(bus, row.kind, firmware("idle", sim::mcu_of(row.kind)),
+                             {.chip_select_pin = row.select, .interrupt_pin = row.interrupt});
+    } catch (const std::invalid_argument& error) {
+      refusal = error.what();
+    }
+    EXPECT_EQ(refusal, row.refusal) << row.select;
+  }
 }
 
 // Asleep between overflows of timer 0: as many as when awake.

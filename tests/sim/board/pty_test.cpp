@@ -188,6 +188,40 @@ TEST_F(BoardPtyRate, OfTheTerminalMattersOnceItIsSet) {
   EXPECT_EQ(pty_.garbled(), garbled);
 }
 
+// One end is always first: what passes until the other follows is nobody's mistake.
+TEST_F(BoardPtyRate, AChangeOfRateIsNotAWrongOne) {
+  terminal_.set_rate(1'000'000);
+  EXPECT_EQ(echo_of({0x53}, 1), Bytes{0x53});
+  terminal_.set_rate(921'600);
+  EXPECT_EQ(echo_of({0x53}, 1), Bytes{0xD3});
+  EXPECT_EQ(pty_.garbled(), 2U);
+  EXPECT_EQ(pty_.garbled_by_wrong_rate(), 0U);
+  terminal_.set_rate(1'000'000);
+  EXPECT_EQ(echo_of({0x53}, 1), Bytes{0x53});
+  EXPECT_EQ(pty_.garbled_by_wrong_rate(), 0U) << "and it is over";
+
+  terminal_.set_rate(921'600);
+  EXPECT_EQ(echo_of({0x53}, 1), Bytes{0xD3});
+  bus_.run_for(1900ms);
+  EXPECT_EQ(echo_of({0x53}, 1), Bytes{0xD3});
+  EXPECT_EQ(pty_.garbled_by_wrong_rate(), 0U) << "not yet";
+  bus_.run_for(200ms);
+  EXPECT_EQ(echo_of({0x53}, 1), Bytes{0xD3});
+  EXPECT_EQ(pty_.garbled_by_wrong_rate(), 6U) << "with those before";
+  terminal_.set_rate(1'000'000);
+  EXPECT_EQ(echo_of({0x53}, 1), Bytes{0x53});
+  EXPECT_EQ(pty_.garbled_by_wrong_rate(), 6U) << "what was wrong stays counted";
+}
+
+TEST_F(BoardPtyRate, ThatWasNeverRightIsWrongAtOnce) {
+  terminal_.set_rate(921'600);
+  EXPECT_EQ(echo_of({0x53}, 1), Bytes{0xD3});
+  EXPECT_EQ(pty_.garbled_by_wrong_rate(), 2U);
+  pty_.unplug();
+  pty_.plug();
+  EXPECT_EQ(pty_.garbled_by_wrong_rate(), 2U);
+}
+
 // To the board the fourth data bit twice, 53 to A3; and back, without the fourth, A3 to D3.
 TEST_F(BoardPtyRate, NeitherEndUnderstandsTheOther) {
   terminal_.set_rate(921'600);

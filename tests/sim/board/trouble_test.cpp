@@ -29,7 +29,8 @@ TEST(BoardFile, IsRefusedWithItsReason) {
   using sim::BoardKind;
   EXPECT_EQ(refusal(BoardKind::uno, "/nowhere/x.elf"), "x.elf: no such file");
   EXPECT_EQ(refusal(BoardKind::uno, "/tmp"), "/tmp: is not a file");
-  EXPECT_EQ(refusal(BoardKind::uno, file_of("empty.elf", "")), "empty.elf: ends too early");
+  EXPECT_EQ(refusal(BoardKind::uno, file_of("empty.elf", "")), "empty.elf: is not an ELF file");
+  EXPECT_EQ(refusal(BoardKind::uno, file_of("short.elf", "no\n")), "short.elf: is not an ELF file");
   EXPECT_EQ(refusal(BoardKind::uno, file_of("text.elf", std::string(100, 'x'))),
             "text.elf: is not an ELF file");
   EXPECT_EQ(refusal(BoardKind::uno, std::filesystem::canonical("/proc/self/exe")),

@@ -69,6 +69,10 @@ class DryRunTest(FlashTest):
          "avrdude -p atmega2560 -c wiring -b 115200 -P /dev/ttyACM0 " + HEX.format("mega/Sniffer")),
         ("uno /dev/ttyACM0 Own/Own.ino",
          "avrdude -p atmega328p -c arduino -b 115200 -P /dev/ttyACM0 " + HEX.format("own/uno/Own")),
+        ("nano /dev/ttyACM0 Own",
+         "avrdude -p atmega328p -c arduino -b 115200 -P /dev/ttyACM0 " + HEX.format("own/nano/Own")),
+        ("uno /dev/ttyACM0 ./Own/",
+         "avrdude -p atmega328p -c arduino -b 115200 -P /dev/ttyACM0 " + HEX.format("own/uno/Own")),
     ]
 
     def test_lines(self):
@@ -77,6 +81,15 @@ class DryRunTest(FlashTest):
         for words, expected in self.LINES:
             with self.subTest(words):
                 self.assertEqual(self.flash("--dry-run", *words.split()), (0, expected, []))
+
+    def test_ready_images(self):
+        elf = f"{BUILD}/firmware/uno/bridge_usb.elf"
+        hex_file = f"{self.folder}/Ready.hex"
+        subprocess.run(["avr-objcopy", "-O", "ihex", elf, hex_file], check=True)
+        line = "avrdude -p atmega328p -c arduino -b 115200 -P /dev/x -D -U flash:w:{}:i\n"
+        self.assertEqual(self.flash("--dry-run", "uno", "/dev/x", elf),
+                         (0, line.format("build/release/firmware/ready/bridge_usb.hex"), []))
+        self.assertEqual(self.flash("--dry-run", "uno", "/dev/x", "Ready.hex"), (0, line.format(hex_file), []))
 
     def test_help(self):
         status, out, said = self.flash("--help")
@@ -95,26 +108,40 @@ class RefusalTest(FlashTest):
         ("--fast uno /dev/null Echo", 2, "unknown option '--fast'; scripts/flash --help shows which there are"),
         ("uno /dev/null Echo --build", 2, "--build: expected a folder after it"),
         ("--old-bootloader mega /dev/null Echo", 2, "--old-bootloader is for uno and nano, not for mega"),
-        ("uno /dev/null echo", 2,
-         f"sketch 'echo': expected {SKETCHES}, or a path that ends in .ino"),
-        ("uno /dev/null .", 2, f"sketch '.': expected {SKETCHES}, or a path that ends in .ino"),
-        ("uno /dev/null Nosuch.ino", 2, "sketch 'FOLDER/Nosuch.ino': no such file"),
+        ("uno /dev/null echo", 2, f"sketch 'echo': expected {SKETCHES}, a sketch's folder or .ino, or a ready "
+                                  ".elf or .hex"),
+        ("uno /dev/null Other", 2, "FOLDER/Other: expected the sketch Other.ino in this folder"),
+        ("uno /dev/null Nosuch.ino", 2, "FOLDER/Nosuch.ino: no such file"),
         ("uno /dev/null Other/Own.ino", 2,
-         "sketch 'FOLDER/Other/Own.ino': expected it in a folder of its name, Own/Own.ino"),
-        ("uno /nosuch/ttyACM9 Echo", 1,
+         "FOLDER/Other/Own.ino: expected it in a folder of its name, Own/Own.ino"),
+        # ready images
+        ("uno /dev/null Nosuch.elf", 2, "Nosuch.elf: no such file"),
+        ("uno /dev/null text.elf", 2, "FOLDER/text.elf: is not an ELF file for an AVR"),
+        ("uno /dev/null text.hex", 2, "FOLDER/text.hex: is not an Intel HEX file"),
+        ("uno /dev/null BUILD/firmware/mega/bridge_usb.elf", 2,
+         "BUILD/firmware/mega/bridge_usb.elf: is for an atmega2560, but a uno has an atmega328p"),
+        ("--dry-run micro /dev/null BUILD/firmware/uno/bridge_usb.elf", 2,
+         "BUILD/firmware/uno/bridge_usb.elf: is for an atmega328p, but a micro has an atmega32u4"),
+        # the port, once there is something for it
+        ("uno /nosuch/ttyACM9 BUILD/firmware/uno/bridge_usb.elf", 1,
          "no port /nosuch/ttyACM9: is the board plugged in? (ls /dev/ttyACM* /dev/ttyUSB*)"),
-        ("uno Other/Own.ino Echo", 1, "no port Other/Own.ino: is the board plugged in? (ls /dev/ttyACM* "
-                                      "/dev/ttyUSB*)"),
-        ("uno FOLDER/Other/Own.ino Echo", 1, "FOLDER/Other/Own.ino is no serial port"),
+        ("uno Other/Own.ino BUILD/firmware/uno/bridge_usb.elf", 1,
+         "no port Other/Own.ino: is the board plugged in? (ls /dev/ttyACM* /dev/ttyUSB*)"),
+        ("uno FOLDER/Other/Own.ino BUILD/firmware/uno/bridge_usb.elf", 1,
+         "FOLDER/Other/Own.ino is no serial port"),
     ]
 
     def test_each_is_one_line(self):
         os.mkdir(f"{self.folder}/Other")
         pathlib.Path(self.folder, "Other/Own.ino").touch()
+        for name in ("text.elf", "text.hex"):
+            pathlib.Path(self.folder, name).write_text("no firmware\n")
         for words, status, expected in self.LINES:
             with self.subTest(words):
-                self.assertEqual(self.flash(*words.replace("FOLDER", self.folder).split()),
-                                 (status, "", ["flash: " + expected.replace("FOLDER", self.folder)]))
+                words, expected = (text.replace("FOLDER", self.folder).replace("BUILD", BUILD)
+                                   for text in (words, expected))
+                self.assertEqual(self.flash("--build", f"{self.folder}/build", *words.split()),
+                                 (status, "", ["flash: " + expected]))
                 self.assertEqual(self.all_said.count("\n"), 1)
 
     def test_no_avrdude(self):
@@ -132,7 +159,8 @@ class FakeAvrdudeTest(FlashTest):
         self.fake = f"{self.folder}/avrdude"
         pathlib.Path(self.fake).write_text(FAKE)
         os.chmod(self.fake, 0o755)
-        self.env = dict(os.environ, PATH=f"{self.folder}:{os.environ['PATH']}")
+        self.env = dict(os.environ, PATH=f"{self.folder}:{os.environ['PATH']}",
+                        XDG_CACHE_HOME=f"{self.folder}/cache")
 
     def arguments(self):
         return pathlib.Path(self.fake + ".arguments").read_text().split("\n")[:-1]
@@ -152,15 +180,26 @@ class FakeAvrdudeTest(FlashTest):
         status, _, said = self.flash("--build", BUILD, "nano", "/dev/null", "Own/Own.ino", env=self.env)
         self.assertEqual((status, said), (0, ["flash: building Own for nano ...",
                                               "flash: /dev/null: nano has Own"]))
-        self.assertEqual(self.arguments()[-1], f"flash:w:{BUILD}/firmware/own/uno/Own.hex:i")
+        self.assertEqual(self.arguments()[-1], f"flash:w:{BUILD}/firmware/own/nano/Own.hex:i")
+
+    def test_it_builds_before_it_looks_for_the_port(self):
+        status, _, said = self.flash("--build", BUILD, "uno", "/nosuch/ttyACM9", "bridge_usb", env=self.env)
+        self.assertEqual((status, said), (1, [
+            "flash: building bridge_usb for uno ...",
+            "flash: no port /nosuch/ttyACM9: is the board plugged in? (ls /dev/ttyACM* /dev/ttyUSB*)"]))
+
+    def test_a_ready_image(self):
+        elf = f"{BUILD}/firmware/uno/bridge_usb.elf"
+        status, _, said = self.flash("--build", f"{self.folder}/build", "uno", "/dev/null", elf, env=self.env)
+        self.assertEqual((status, said), (0, ["flash: /dev/null: uno has bridge_usb"]))
+        self.assertEqual(self.arguments()[-1], f"flash:w:{self.folder}/build/firmware/ready/bridge_usb.hex:i")
 
     def test_a_sketch_that_does_not_compile(self):
         os.mkdir(f"{self.folder}/Own")
         pathlib.Path(self.folder, "Own/Own.ino").write_text("void setup() { nonsense(); }\nvoid loop() {}\n")
         status, _, said = self.flash("--build", BUILD, "uno", "/dev/null", "Own/Own.ino", env=self.env)
-        self.assertEqual((status, said), (1, [
-            "flash: building Own for uno ...", f"flash: the build failed; all it said is in {BUILD}/flash.log "
-                                               "(scripts/setup demo installs what it needs)"]))
+        self.assertEqual((status, said), (1, ["flash: building Own for uno ...",
+                                              f"flash: {self.folder}/Own/Own.ino does not build for uno"]))
         self.assertRegex(self.all_said, "error: .nonsense. was not declared in this scope")
         self.assertFalse(os.path.exists(self.fake + ".arguments"))
 

@@ -62,6 +62,15 @@ class ShowTest(SimTest):
         )
         self.assertIn("a: can: normal, 500000 bit/s\n", out)
 
+    # Alone with a frame of another rate, its chip goes error-passive, which is no other rate.
+    def test_another_rate_is_told_once(self):
+        sim = self.sim("--rate", "250000", "--bus", "local:robot", "a:uno=" + UNO)
+        sim.wait_for("a: can: normal, 500000 bit/s")
+        sim.say("a serial ping")
+        sim.wait_for("a: can: error-passive, 500000 bit/s")
+        sim.say("quit")
+        self.assertEqual(sim.result()[2].count("its chip is set to 500000 bit/s"), 1)
+
     def test_a_crystal_of_its_own(self):
         out = self.run_sim("--crystal", "b:8000000", "--for", "0.1", "--speed", "max",
                            "a:uno=" + UNO, "b:leonardo=" + LEONARDO)[1]
@@ -69,10 +78,43 @@ class ShowTest(SimTest):
         self.assertIn("b: can: normal, 250000 bit/s\n", out)
 
     def test_chip_select_on_another_pin_is_not_found(self):
-        status, out, err = self.run_sim("--cs", "9", "--for", "0.1", "--speed", "max",
+        status, out, err = self.run_sim("--cs", "A3", "--for", "0.1", "--speed", "max",
                                         "uno=" + UNO)
-        self.assertEqual((status, err), (0, ""))
+        self.assertEqual((status, err), (0, "roio-sim: uno: its sketch uses SPI, but not pin A3, where the chip's "
+                                            "select is; see --cs\n"))
         self.assertNotIn("can:", out)
+
+
+    def test_boards_and_their_second_names(self):
+        for board, image, kind in (("a:uno=", UNO, "7"), ("a:nano=", UNO, "7"), ("a:leonardo=", LEONARDO, "13"),
+                                   ("a:micro=", LEONARDO, "13"), ("a:mega=", MEGA, "13")):
+            with self.subTest(board):
+                sim = self.sim(board + image, "--bus", "local:robot")
+                sim.wait_for("a: can: normal, 500000 bit/s")
+                self.send("local:robot", "0.2", "6F01")
+                sim.wait_for(f"a: output: pin {kind} high")
+                sim.end()
+
+    def test_what_the_sketch_drives_is_said(self):
+        for command, pin, what in (("pin 9 low", "9", "low"), ("press D9", "9", "low"),
+                                   ("hold 10", "10", "low"), ("pin 13 high", "13", "high")):
+            with self.subTest(command):
+                sim = self.sim("a:uno=" + UNO, "--bus", "local:robot", "--do", "a " + command)
+                sim.wait_for("a: can: normal, 500000 bit/s")
+                self.send("local:robot", "0.2", "7605DC")  # a servo on pin 9
+                sim.wait_for("a: servo: pin 9 at 93 degrees")
+                sim.say("a " + command, "wait 0.05", "quit")
+                status, _, err = sim.result()
+                self.assertEqual(status, 0)
+                # At first, for two of them, the pin is an input; then each command is told once.
+                self.assertEqual(set(err.splitlines()), {
+                    f"roio-sim: a: pin {pin}: the sketch drives this pin, so that {what} from outside "
+                    "changes nothing"})
+
+    def test_an_input_may_be_driven(self):
+        status, _, err = self.run_sim("--speed", "max", "--for", "0.2", "uno=" + UNO, "--do", "uno pin 8 high",
+                                      "--do", "uno hold A1", "--do", "uno analog A0 0.5")
+        self.assertEqual((status, err), (0, ""))
 
 
 class CommandTest(SimTest):
@@ -118,7 +160,9 @@ class CommandTest(SimTest):
 
     # what is typed, the line on standard error
     NOT_UNDERSTOOD = [
-        ("jump", '"jump": expected press, hold, release, pin, analog, serial, reset, unplug or plug'),
+        ("jump", '"jump": expected a board\'s name and press, hold, release, pin, analog, serial, reset, '
+                 'unplug or plug; or wait, help or quit, found "jump"'),
+        ("hold 4", '"hold 4": expected a board\'s name first: NAME hold 4'),
         ("uno jump", '"uno jump": expected press, hold, release, pin, analog, serial, reset, unplug or '
                      'plug, found "jump"'),
         ("uno press", '"uno press": expected a pin such as 4 or A0'),
@@ -147,6 +191,13 @@ class CommandTest(SimTest):
         # Those that no board could understand are named when they are read, before any is done.
         self.assertEqual(sorted(err.splitlines()),
                          sorted("roio-sim: " + line for _, line in self.NOT_UNDERSTOOD))
+
+    def test_a_script_that_goes_wrong_does_not_go_on_about_it(self):
+        status, _, err = self.run_sim("--speed", "max", "uno=" + UNO, stdin=1000 * "uno jump\n" + "quit\n")
+        self.assertEqual(status, 1)
+        lines = err.splitlines()
+        self.assertEqual(len(lines), 21)
+        self.assertEqual(lines[-1], "roio-sim: and 980 commands more that could not be done")
 
     def test_help(self):
         status, _, err = self.run_sim("--speed", "max", "uno=" + UNO, stdin="help\nquit\n")
@@ -232,11 +283,31 @@ class SerialPortTest(SimTest):
         self.ask(terminal, b"right", b"said right\r\n")
         self.set_rate(terminal, 250000)
         os.write(terminal, b"wrong\n")
-        sim.say("wait 0.2", "quit")  # they have come by then
+        sim.say("wait 0.2", "a serial there", "wait 2.1", "a serial still", "wait 0.2", "quit")
         status, _, err = sim.result()
         self.assertEqual(status, 0)
         self.assertRegex(err, r"^roio-sim: a: \d+ bytes garbled: its serial port was set to another rate "
                               r"than the board's\n")
+
+    def test_a_change_of_the_line_rate_is_no_fault(self):
+        sim = self.sim("--serial-pty", "a:" + self.LINK, "a:uno=" + UNO)
+        terminal = self.terminal(self.LINK)
+        sim.wait_for("a: can: normal, 500000 bit/s")
+        self.set_rate(terminal, 115200)
+        self.ask(terminal, b"right", b"said right\r\n")
+        self.set_rate(terminal, 250000)
+        sim.say("a serial there", "wait 0.2", "quit")  # it answers
+        self.assertEqual(sim.result()[::2], (0, ""))
+
+    def test_a_line_rate_that_was_never_right(self):
+        sim = self.sim("--serial-pty", "a:" + self.LINK, "a:uno=" + UNO)
+        terminal = self.terminal(self.LINK)
+        sim.wait_for("a: can: normal, 500000 bit/s")
+        self.set_rate(terminal, 9600)
+        sim.say("a serial there", "wait 0.2", "quit")
+        status, _, err = sim.result()
+        self.assertEqual(status, 0)
+        self.assertRegex(err, r"^roio-sim: a: \d+ bytes garbled: ")
 
     def test_json_lines(self):
         status, out, err = self.run_sim(

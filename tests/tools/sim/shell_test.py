@@ -62,8 +62,9 @@ class CompletionTest(SimTest):
     LINES = [
         ("roio-sim u", ["uno="]),
         ("roio-sim m", ["mega=", "micro="]),
+        ("roio-sim n", ["nano="]),
         ("roio-sim arm:l", ["arm:leonardo="]),
-        ("roio-sim arm:uno=Ar", ["arm:uno=Arm.elf"]),
+        ("roio-sim arm:uno=Ar", ["arm:uno=Arm.elf", "arm:uno=Arm.ino"]),
         ("roio-sim --js", ["--json"]),
         ("roio-sim --bus lo", ["local:robot"]),
         ("roio-sim --speed ", ["max"]),
@@ -72,7 +73,7 @@ class CompletionTest(SimTest):
     def setUp(self):
         super().setUp()
         self.dump("local:robot")  # a bus to be offered
-        for name in ("Arm.elf", "Arm.hex"):
+        for name in ("Arm.elf", "Arm.hex", "Arm.ino"):
             open(self.path(name), "w").close()
 
     def run_shell(self, *command):

@@ -19,11 +19,12 @@ _roio_sim_words() {
   case $current in
     -*) echo --bus --rate --crystal --cs --int --serial-pty --do --speed --for --json --verbose --help --version; return ;;
     *=*) compgen -f -X '!*.elf' -P "${current%%=*}=" -- "${current#*=}"
+         compgen -f -X '!*.ino' -P "${current%%=*}=" -- "${current#*=}"
          compgen -d -S / -P "${current%%=*}=" -- "${current#*=}"; return ;;
     *:*) local name=${current%%:*}
-         echo "$name:uno= $name:leonardo= $name:micro= $name:mega="; return ;;
+         echo "$name:uno= $name:nano= $name:leonardo= $name:micro= $name:mega="; return ;;
   esac
-  echo uno= leonardo= micro= mega=
+  echo uno= nano= leonardo= micro= mega=
 }
 
 _roio_sim() {

@@ -17,12 +17,12 @@ function __roio_sim_boards
         for file in (string replace -r '^[^=]*=' '' -- $current)*
             if test -d $file
                 echo $board$file/
-            else if string match -q '*.elf' -- $file
+            else if string match -qr '\.(elf|ino)$' -- $file
                 echo $board$file
             end
         end
     else
-        for board in uno leonardo micro mega
+        for board in uno nano leonardo micro mega
             echo "$name$board="
         end
     end

@@ -1,5 +1,6 @@
 #include "board_command.hpp"
 
+#include <algorithm>
 #include <array>
 #include <charconv>
 #include <utility>
@@ -10,7 +11,10 @@ namespace roio::sim_tool {
 namespace {
 
 constexpr double supply_volts = 5;
-constexpr std::uint32_t largest_pin = 99;  // of any board; which it has, the board knows
+constexpr std::array<std::string_view, 9> verbs{"press",  "hold",  "release", "pin", "analog",
+                                                "serial", "reset", "unplug",  "plug"};
+constexpr const char* verb_list =
+    "press, hold, release, pin, analog, serial, reset, unplug or plug";
 
 constexpr std::string_view blanks = " \t\r\n";
 
@@ -31,15 +35,6 @@ ParseError expected(const std::string& what, std::string_view found) {
   return {"expected " + what + (found.empty() ? "" : ", found " + quote(found)), 0};
 }
 
-Parsed<PinName> parse_pin(std::string_view word) {
-  const bool analog = word.starts_with('A');
-  const auto number = parse_whole_number(analog ? word.substr(1) : word, 0, largest_pin);
-  if (!number) {
-    return expected("a pin such as 4 or A0", word);
-  }
-  return PinName{analog, static_cast<int>(*number)};
-}
-
 Parsed<double> parse_volts(std::string_view word) {
   const bool in_volts = word.ends_with('V');
   const std::string_view digits = in_volts ? word.substr(0, word.size() - 1) : word;
@@ -54,7 +49,7 @@ Parsed<double> parse_volts(std::string_view word) {
 
 Parsed<Action> parse_analog(std::string_view& rest) {
   const std::string_view channel_word = take_word(rest);
-  const auto pin = parse_pin(channel_word);
+  const auto pin = parse_pin_name(channel_word);
   if (!pin || !pin->analog) {
     return expected("an analog input such as A0", channel_word);
   }
@@ -66,7 +61,7 @@ Parsed<Action> parse_analog(std::string_view& rest) {
 }
 
 Parsed<Action> parse_set_pin(std::string_view& rest) {
-  const auto pin = parse_pin(take_word(rest));
+  const auto pin = parse_pin_name(take_word(rest));
   if (!pin) {
     return pin.error();
   }
@@ -78,7 +73,7 @@ Parsed<Action> parse_set_pin(std::string_view& rest) {
 }
 
 Parsed<Action> parse_button(std::string_view verb, std::string_view& rest) {
-  const auto pin = parse_pin(take_word(rest));
+  const auto pin = parse_pin_name(take_word(rest));
   if (!pin) {
     return pin.error();
   }
@@ -134,7 +129,11 @@ Parsed<Action> parse_board_action(std::string_view verb, std::string_view& rest)
   if (verb == "plug" || verb == "unplug") {
     return parse_plug(verb == "plug", rest);
   }
-  return expected("press, hold, release, pin, analog, serial, reset, unplug or plug", verb);
+  return expected(verb_list, verb);
+}
+
+bool is_verb(std::string_view word) {
+  return std::find(verbs.begin(), verbs.end(), word) != verbs.end();
 }
 
 Parsed<Action> parse_own_action(std::string_view verb, std::string_view& rest) {
@@ -158,6 +157,14 @@ Parsed<Instruction> parse_instruction(std::string_view line) {
   std::string_view rest = line;
   const std::string_view first = take_word(rest);
   const bool own = first == "quit" || first == "help" || first == "wait";
+  if (std::string_view after = rest; !own && !is_verb(take_word(after)) && is_verb(first)) {
+    const std::string_view all = line.substr(line.find_first_not_of(blanks));
+    return expected("a board's name first: NAME " + std::string(all), "");
+  }
+  if (std::string_view after = rest; !own && take_word(after).empty()) {
+    return expected(std::string("a board's name and ") + verb_list + "; or wait, help or quit",
+                    first);
+  }
   const auto action =
       own ? parse_own_action(first, rest) : parse_board_action(take_word(rest), rest);
   if (!action) {

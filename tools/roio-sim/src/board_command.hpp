@@ -21,12 +21,9 @@
 #include <string_view>
 #include <variant>
 
-namespace roio::sim_tool {
+#include "board_words.hpp"
 
-struct PinName {
-  bool analog = false;  ///< "A0": the pin of analog input `number`.
-  int number = 0;
-};
+namespace roio::sim_tool {
 
 struct Press {
   PinName pin;

@@ -14,8 +14,11 @@ constexpr std::size_t longest_name = 32;
 // First words of commands, and of lines that are about no board.
 constexpr std::array<std::string_view, 4> reserved_names{"wait", "quit", "help", "bus"};
 
-constexpr std::array<std::pair<std::string_view, sim::BoardKind>, 4> kinds{{
+constexpr std::uint32_t largest_pin = 99;  // of any board; which it has, the board knows
+
+constexpr std::array<std::pair<std::string_view, sim::BoardKind>, 5> kinds{{
     {"uno", sim::BoardKind::uno},
+    {"nano", sim::BoardKind::uno},
     {"leonardo", sim::BoardKind::leonardo},
     {"micro", sim::BoardKind::leonardo},
     {"mega", sim::BoardKind::mega},
@@ -47,7 +50,7 @@ ParseError error_in(std::string_view what, std::string_view text, const std::str
 Parsed<BoardWord> parse_board_word(std::string_view text) {
   const std::size_t equals = text.find('=');
   if (equals == std::string_view::npos || equals + 1 == text.size()) {
-    return error_in("board", text, "[NAME:]BOARD=ELF, such as arm:uno=ServoController.elf");
+    return error_in("board", text, "[NAME:]BOARD=FILE, such as arm:uno=ServoController.elf");
   }
   const std::string_view left = text.substr(0, equals);
   const std::size_t colon = left.find(':');
@@ -59,12 +62,13 @@ Parsed<BoardWord> parse_board_word(std::string_view text) {
     }
   }
   word.kind_word = colon == std::string_view::npos ? left : left.substr(colon + 1);
-  word.elf = text.substr(equals + 1);
+  word.file = text.substr(equals + 1);
   const auto* const kind = std::find_if(
       kinds.begin(), kinds.end(), [&](const auto& entry) { return entry.first == word.kind_word; });
   if (kind == kinds.end()) {
-    return error_in("board", text,
-                    "uno, leonardo, micro or mega before the '=', found " + quote(word.kind_word));
+    return error_in(
+        "board", text,
+        "uno, nano, leonardo, micro or mega before the '=', found " + quote(word.kind_word));
   }
   word.kind = kind->second;
   return word;
@@ -73,9 +77,26 @@ Parsed<BoardWord> parse_board_word(std::string_view text) {
 NamedValue split_named_value(std::string_view text) {
   const std::size_t colon = text.find(':');
   if (colon == std::string_view::npos) {
-    return {"", std::string(text)};
+    return {std::nullopt, std::string(text)};
   }
   return {std::string(text.substr(0, colon)), std::string(text.substr(colon + 1))};
+}
+
+Parsed<PinName> parse_pin_name(std::string_view text) {
+  const char kind = text.empty() ? '\0' : text.front();
+  const bool analog = kind == 'A' || kind == 'a';
+  const bool prefixed = analog || kind == 'D' || kind == 'd';
+  const auto number = parse_whole_number(prefixed ? text.substr(1) : text, 0, largest_pin);
+  if (!number) {
+    return ParseError{"expected a pin such as 4 or A0" +
+                          (text.empty() ? std::string() : ", found " + quote(text)),
+                      0};
+  }
+  return PinName{analog, static_cast<int>(*number)};
+}
+
+int number_of(sim::BoardKind kind, const PinName& pin) {
+  return sim::main_pin(kind, pin.analog ? sim::analog_pin(kind, pin.number) : pin.number);
 }
 
 Parsed<std::uint32_t> parse_whole_number(std::string_view text, std::uint32_t smallest,

@@ -2,6 +2,7 @@
 #ifndef ROIO_SIM_TOOL_BOARD_WORDS_HPP
 #define ROIO_SIM_TOOL_BOARD_WORDS_HPP
 
+#include <optional>
 #include <roio/sim/board.hpp>
 #include <roio/text.hpp>
 #include <string>
@@ -13,17 +14,28 @@ struct BoardWord {
   std::string name;  ///< Empty: none given.
   sim::BoardKind kind = sim::BoardKind::uno;
   std::string kind_word;  ///< As it was written.
-  std::string elf;
+  std::string file;       ///< An ELF file or a sketch.
 };
-/// "[NAME:]BOARD=ELF", BOARD one of uno, leonardo, micro (which is a leonardo) and mega.
+/// "[NAME:]BOARD=FILE", BOARD one of uno, nano (which is an uno), leonardo, micro (which is a
+/// leonardo) and mega.
 Parsed<BoardWord> parse_board_word(std::string_view text);
 
 /// "[NAME:]VALUE": "arm:9", or "9" for all boards.
 struct NamedValue {
-  std::string name;  ///< Empty: all boards.
+  std::optional<std::string> name;  ///< None: all boards.
   std::string value;
 };
 NamedValue split_named_value(std::string_view text);
+
+/// A pin as one says it: "4" or "D4", "A0"; "d4" and "a0", too.
+struct PinName {
+  bool analog = false;  ///< The pin of analog input `number`.
+  int number = 0;
+};
+Parsed<PinName> parse_pin_name(std::string_view text);
+/// Arduino's number of it.
+/// @throws std::invalid_argument: the board has no such pin.
+int number_of(sim::BoardKind kind, const PinName& pin);
 
 /// A whole number, decimal digits alone.
 Parsed<std::uint32_t> parse_whole_number(std::string_view text, std::uint32_t smallest,

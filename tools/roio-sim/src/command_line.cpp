@@ -17,11 +17,13 @@ namespace {
 using cli::UsageError;
 
 constexpr const char* examples =
-    R"(BOARD is uno, leonardo, micro or mega, ELF what the compiler made for it. NAME is
+    R"(BOARD is uno, nano, leonardo, micro or mega. FILE is a sketch, which is built first
+(Fan/Fan.ino or its folder), or the ELF file that the compiler made of one. NAME is
 what its lines begin with and commands call it; without one: uno, uno2, ...
 Each board has an MCP2515: SPI, chip select on pin 10, INT on pin 2.
 
 Examples:
+  roio-sim uno=Fan/Fan.ino                      a sketch of your own
   roio-sim uno=ServoController.elf              one board, and what it shows
   roio-sim --bus local:robot arm:uno=ServoController.elf sensors:uno=SensorBoard.elf
   roio-cli send local:robot 0.2 5A2D00          in another terminal: moves the servos
@@ -47,33 +49,49 @@ T value_or_refuse(const Parsed<T>& parsed, const std::string& option) {
 
 /// The words, as they come.
 struct Words {
-  std::string bus, rate = "500000", speed = "1", end;
+  std::vector<std::string> bus, rate, speed, end;
   std::vector<std::string> boards, crystals, chip_selects, interrupts, terminals, commands;
   bool json = false, verbose = false, version = false;
 };
 
 void declare(CLI::App& app, Words& words) {
-  app.add_option("BOARD", words.boards, "[NAME:]BOARD=ELF")->type_name("");
-  app.add_option("--bus", words.bus, "Join the simulated bus to this one: local:NAME, or can0")
-      ->type_name("BUS");
-  app.add_option("--rate", words.rate, "Of the simulated bus, bit/s (default 500000)")
-      ->type_name("BPS");
+  app.add_option("BOARD", words.boards, "[NAME:]BOARD=FILE")->type_name("");
+  // CLI11 would have a word of its own for an empty value, and for one too many: single() has ours.
+  const auto one = [&app](const char* name, std::vector<std::string>& values, const char* type,
+                          const char* description) {
+    app.add_option(name, values, description)
+        ->type_name(type)
+        ->allow_extra_args(false)
+        ->expected(1)
+        ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+  };
   const auto of_boards = [&app](const char* name, std::vector<std::string>& values,
                                 const char* type, const char* description) {
     app.add_option(name, values, description)->type_name(type)->allow_extra_args(false);
   };
+  one("--bus", words.bus, "BUS", "Join the simulated bus to this one: local:NAME, or can0");
+  one("--rate", words.rate, "BPS", "Of the simulated bus, bit/s (default 500000)");
   of_boards("--crystal", words.crystals, "[NAME:]HZ", "Of the MCP2515 (default 16000000)");
   of_boards("--cs", words.chip_selects, "[NAME:]PIN", "Where chip select is (default 10)");
   of_boards("--int", words.interrupts, "[NAME:]PIN|none", "Where INT is (default 2)");
   of_boards("--serial-pty", words.terminals, "NAME[:PATH]",
             "Its serial port becomes a terminal, at PATH (else its path is printed)");
   of_boards("--do", words.commands, "COMMAND", "Do this first; may be given several times");
-  app.add_option("--speed", words.speed, "Times real time (default 1); max: as fast as it goes")
-      ->type_name("X|max");
-  app.add_option("--for", words.end, "End after so much simulated time")->type_name("SECONDS");
+  one("--speed", words.speed, "X|max", "Times real time (default 1); max: as fast as it goes");
+  one("--for", words.end, "SECONDS", "End after so much simulated time");
   app.add_flag("--json", words.json)->description("JSON lines");
   app.add_flag("-v,--verbose", words.verbose)->description("Say on standard error when it runs");
   app.add_flag("--version", words.version, "Print the version and end");
+}
+
+// The value of an option that may be given once.
+std::optional<std::string> single(const std::vector<std::string>& values,
+                                  const std::string& option) {
+  if (values.size() > 1) {
+    throw UsageError(option + ": expected once, found " + quote(values[0]) + " and " +
+                     quote(values[1]));
+  }
+  return values.empty() ? std::nullopt : std::optional(values.front());
 }
 
 double parse_speed(const std::string& text) {
@@ -112,7 +130,8 @@ std::vector<BoardWish> parse_boards(const std::vector<std::string>& words) {
     BoardWish wish;
     wish.name = parsed.back().name;
     wish.kind = parsed.back().kind;
-    wish.elf = parsed.back().elf;
+    wish.kind_word = parsed.back().kind_word;
+    wish.elf = parsed.back().file;
     if (!wish.name.empty() && is_taken(boards, wish.name)) {
       throw UsageError("board " + quote(word) + ": expected another name, " + quote(wish.name) +
                        " is taken");
@@ -129,17 +148,18 @@ std::vector<BoardWish> parse_boards(const std::vector<std::string>& words) {
 }
 
 // Does something to the board that the word before the colon names, or to all.
-void for_named(std::vector<BoardWish>& boards, const std::string& option, const std::string& name,
+void for_named(std::vector<BoardWish>& boards, const std::string& option,
+               const std::optional<std::string>& name,
                const std::function<void(BoardWish&)>& change) {
-  if (!name.empty() && !is_taken(boards, name)) {
+  if (name && !is_taken(boards, *name)) {
     std::string names;
     for (const BoardWish& board : boards) {
       names += (names.empty() ? "" : ", ") + board.name;
     }
-    throw UsageError(option + ": no board " + quote(name) + "; there is " + names);
+    throw UsageError(option + ": no board " + quote(*name) + "; there is " + names);
   }
   for (BoardWish& board : boards) {
-    if (name.empty() || board.name == name) {
+    if (!name || board.name == *name) {
       change(board);
     }
   }
@@ -149,7 +169,7 @@ void for_named(std::vector<BoardWish>& boards, const std::string& option, const 
 void add_terminal(std::vector<BoardWish>& boards, const std::string& word) {
   const std::size_t colon = word.find(':');
   const std::string path = colon == std::string::npos ? "" : word.substr(colon + 1);
-  if (colon != std::string::npos && path.empty()) {
+  if (colon == 0 || word.empty() || (colon != std::string::npos && path.empty())) {
     throw UsageError("--serial-pty: expected NAME or NAME:PATH, found " + quote(word));
   }
   for (const BoardWish& board : boards) {
@@ -164,8 +184,15 @@ void add_terminal(std::vector<BoardWish>& boards, const std::string& word) {
   });
 }
 
+int pin_of(const BoardWish& board, const std::string& option, const PinName& pin) {
+  try {
+    return number_of(board.kind, pin);
+  } catch (const std::invalid_argument& error) {
+    throw UsageError(option + board.name + ": " + error.what());
+  }
+}
+
 void apply_to_boards(const Words& words, std::vector<BoardWish>& boards) {
-  constexpr std::uint32_t largest_pin = 99;  // the board refuses what it does not have
   for (const std::string& word : words.crystals) {
     const NamedValue named = split_named_value(word);
     const auto hz =
@@ -175,23 +202,26 @@ void apply_to_boards(const Words& words, std::vector<BoardWish>& boards) {
   }
   for (const std::string& word : words.chip_selects) {
     const NamedValue named = split_named_value(word);
-    const auto pin = value_or_refuse(parse_whole_number(named.value, 0, largest_pin), "--cs: ");
-    for_named(boards, "--cs", named.name,
-              [&](BoardWish& board) { board.options.chip_select_pin = static_cast<int>(pin); });
+    const auto pin = value_or_refuse(parse_pin_name(named.value), "--cs: ");
+    for_named(boards, "--cs", named.name, [&](BoardWish& board) {
+      board.options.chip_select_pin = pin_of(board, "--cs: ", pin);
+    });
   }
   for (const std::string& word : words.interrupts) {
     const NamedValue named = split_named_value(word);
-    std::optional<int> pin;
+    std::optional<PinName> pin;
     if (named.value != "none") {
-      const auto number = parse_whole_number(named.value, 0, largest_pin);
-      if (!number) {
-        throw UsageError("--int: expected none, or a whole number 0.." +
-                         std::to_string(largest_pin) + ", found " + quote(named.value));
+      const auto parsed = parse_pin_name(named.value);
+      if (!parsed) {
+        throw UsageError("--int: expected none, or a pin such as 3 or A0, found " +
+                         quote(named.value));
       }
-      pin = static_cast<int>(*number);
+      pin = *parsed;
     }
-    for_named(boards, "--int", named.name,
-              [&](BoardWish& board) { board.options.interrupt_pin = pin; });
+    for_named(boards, "--int", named.name, [&](BoardWish& board) {
+      board.options.interrupt_pin =
+          pin ? std::optional(pin_of(board, "--int: ", *pin)) : std::nullopt;
+    });
   }
   for (const std::string& word : words.terminals) {
     add_terminal(boards, word);
@@ -202,18 +232,19 @@ Options parse(const Words& words) {
   constexpr std::uint32_t slowest_bps = 5'000;
   constexpr std::uint32_t fastest_bps = 1'000'000;
   if (words.boards.empty()) {
-    refuse("expected a board: [NAME:]BOARD=ELF");
+    refuse("expected a board: [NAME:]BOARD=FILE");
   }
   Options options;
-  if (!words.bus.empty()) {
-    static_cast<void>(value_or_refuse(parse_bus_url(words.bus), ""));
-    options.bus = words.bus;
+  options.bus = single(words.bus, "--bus");
+  if (options.bus) {
+    static_cast<void>(value_or_refuse(parse_bus_url(*options.bus), ""));
   }
+  const std::string rate = single(words.rate, "--rate").value_or("500000");
   options.bitrate_bps =
-      value_or_refuse(parse_whole_number(words.rate, slowest_bps, fastest_bps), "--rate: ");
-  options.speed = parse_speed(words.speed);
-  if (!words.end.empty()) {
-    options.end = value_or_refuse(parse_seconds(words.end), "--for: ");
+      value_or_refuse(parse_whole_number(rate, slowest_bps, fastest_bps), "--rate: ");
+  options.speed = parse_speed(single(words.speed, "--speed").value_or("1"));
+  if (const auto end = single(words.end, "--for")) {
+    options.end = value_or_refuse(parse_seconds(*end), "--for: ");
   }
   options.boards = parse_boards(words.boards);
   apply_to_boards(words, options.boards);
@@ -231,7 +262,7 @@ class HelpFormatter final : public CLI::Formatter {
  public:
   HelpFormatter() { column_width(28); }
   std::string make_usage(const CLI::App* /*app*/, std::string /*name*/) const override {
-    return "Usage: roio-sim [OPTIONS] [NAME:]BOARD=ELF...\n";
+    return "Usage: roio-sim [OPTIONS] [NAME:]BOARD=FILE...\n";
   }
 };
 
@@ -258,7 +289,9 @@ std::variant<Information, Options> parse_command_line(int argc, const char* cons
   if (words.version) {
     return Information{"roio-sim " ROIO_VERSION "\n"};
   }
-  if (const auto rest = app.remaining(); !rest.empty()) {
+  auto rest = app.remaining();
+  std::erase(rest, "--");  // what follows it is taken as a board already
+  if (!rest.empty()) {
     refuse("unknown option " + quote(rest.front()));
   }
   return parse(words);

@@ -9,6 +9,7 @@
 #include "process.hpp"
 #include "report.hpp"
 #include "simulation.hpp"
+#include "sketch.hpp"
 
 namespace roio::sim_tool {
 namespace {
@@ -19,9 +20,10 @@ int run(const Information& information) {
   cli::flush(out);
   return cli::exit_success;
 }
-int run(const Options& options) {
+int run(Options options) {
   catch_signals();
-  return simulate(options);
+  const int status = build_sketches(options.boards);
+  return status != 0 ? status : simulate(options);
 }
 
 }  // namespace

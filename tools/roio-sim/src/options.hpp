@@ -15,7 +15,8 @@ namespace roio::sim_tool {
 struct BoardWish {
   std::string name;
   sim::BoardKind kind = sim::BoardKind::uno;
-  std::string elf;
+  std::string kind_word;  ///< As it was written: nano, which is an uno.
+  std::string elf;        ///< Or a sketch, until it is built (sketch.hpp).
   sim::BoardOptions options;
   bool has_terminal = false;
   std::string terminal_link;  ///< Where it is to be found; empty: only under its own name.

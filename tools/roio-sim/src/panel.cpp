@@ -1,5 +1,7 @@
 #include "panel.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
@@ -7,6 +9,7 @@
 #include <span>
 #include <stdexcept>
 #include <system_error>
+#include <utility>
 
 #include "record_format.hpp"
 
@@ -26,6 +29,7 @@ constexpr double servo_play_degrees = 0.75;  // so that one between two degrees 
 constexpr sim::SimTime press_time = 100ms;
 constexpr sim::SimTime unfinished_line_time = 200ms;
 constexpr std::size_t longest_line = 1024;
+constexpr std::size_t most_kinds = 10;  // of what hardware does not put up with
 
 // Arduino's numbers of SS, MOSI, MISO and SCK.
 std::set<int> spi_pins(sim::BoardKind kind) {
@@ -38,6 +42,18 @@ std::set<int> spi_pins(sim::BoardKind kind) {
       break;
   }
   return {50, 51, 52, 53};
+}
+
+int mosi_pin(sim::BoardKind kind) {
+  switch (kind) {
+    case sim::BoardKind::uno:
+      return 11;
+    case sim::BoardKind::leonardo:
+      return 16;
+    case sim::BoardKind::mega:
+      break;
+  }
+  return 51;
 }
 
 sim::BoardOptions board_options(const BoardWish& wish) {
@@ -70,17 +86,22 @@ Panel::Panel(sim::CanBus& bus, const BoardWish& wish, std::uint32_t bitrate_bps,
       bitrate_bps_(bitrate_bps),
       report_(report),
       board_(bus, wish.kind, wish.elf, board_options(wish)),
+      select_pin_(sim::main_pin(wish.kind, wish.options.chip_select_pin)),
       state_(can_state()),
       state_shown_(state_) {
+  if (wish.options.interrupt_pin) {
+    interrupt_pin_ = sim::main_pin(wish.kind, *wish.options.interrupt_pin);
+  }
   watch_pins(wish);
   watch_serial(wish);
 }
 
 void Panel::watch_pins(const BoardWish& wish) {
   std::set<int> busy = spi_pins(wish.kind);
-  busy.insert(wish.options.chip_select_pin);
+  busy.insert(select_pin_);
   for (int number = 0; number < board_.pins(); ++number) {
-    if (!busy.contains(number)) {
+    const bool is_other_number = sim::main_pin(wish.kind, number) != number;
+    if (!is_other_number && !busy.contains(number)) {
       pins_[number] = {};
       board_.on_pin(number, [this, number](sim::SimTime time, bool high) {
         pin_changed(number, time, high);
@@ -143,20 +164,32 @@ void Panel::look() {
       end_line(uart, line);
     }
   }
+  look_outside();
   look_at_chip();
+}
+
+// A sketch may set its pins after the command came.
+void Panel::look_outside() {
+  for (auto& [number, outside] : outside_) {
+    if (!outside.is_told && board_.pin(number)) {
+      outside.is_told = true;
+      note(name() + ": pin " + pin_name(number) + ": the sketch drives this pin, so that " +
+           outside.what + " from outside changes nothing");
+    }
+  }
 }
 
 void Panel::look_at_pin(int number, Pin& pin) {
   const sim::SimTime now = bus_.now();
   if (pin.high != pin.shown && now - pin.changed >= shortest_level) {
     pin.shown = pin.high;
-    report_.pin(now, name(), number, pin.high);
+    report_.pin(now, name(), pin_name(number), pin.high);
   }
   if (pin.degrees != pin.degrees_shown &&
       (!pin.degrees_shown || now - pin.degrees_time >= between_servo_lines)) {
     pin.degrees_shown = pin.degrees;
     pin.degrees_time = now;
-    report_.servo(now, name(), number, *pin.degrees);
+    report_.servo(now, name(), pin_name(number), *pin.degrees);
   }
 }
 
@@ -216,7 +249,8 @@ void Panel::look_at_chip() {
   }
   state_shown_ = state_;
   report_.can(bus_.now(), name(), state_.name, state_.bitrate_bps);
-  if (state_.bitrate_bps != 0 && state_.bitrate_bps / 1000 != bitrate_bps_ / 1000) {
+  if (state_.bitrate_bps != 0 && state_.bitrate_bps / 1000 != bitrate_bps_ / 1000 &&
+      std::exchange(other_bitrate_bps_, state_.bitrate_bps) != state_.bitrate_bps) {
     note(name() + ": its chip is set to " + std::to_string(state_.bitrate_bps) +
          " bit/s, the bus runs at " + std::to_string(bitrate_bps_) +
          " (see --rate, and --crystal)");
@@ -237,11 +271,43 @@ void Panel::finish() {
   if (terminal_) {
     tell_lost_bytes();
   }
-  for (const auto* violations : {&board_.violations(), &board_.chip().violations()}) {
-    if (!violations->empty()) {
-      note(name() + ": " + cli::count_of(violations->size(), "thing") +
-           " that the hardware does not put up with; the first: " + violations->front().what);
+  tell_unused_chip();
+  tell_violations();
+}
+
+// Of a sketch that has another pin in mind nothing else is to be seen.
+void Panel::tell_unused_chip() {
+  if (board_.pin(mosi_pin(board_.kind())) && !board_.pin(select_pin_)) {
+    note(name() + ": its sketch uses SPI, but not pin " + pin_name(select_pin_) +
+         ", where the chip's select is; see --cs");
+  }
+}
+
+// Each kind once, with how often it was.
+void Panel::tell_violations() {
+  const sim::Mcp2515Chip& chip = board_.chip();
+  std::vector<std::pair<std::string, std::uint64_t>> kinds;
+  std::uint64_t rest = chip.violation_count() - chip.violations().size();
+  for (const auto* violations : {&board_.violations(), &chip.violations()}) {
+    for (const sim::Mcp2515Violation& violation : *violations) {
+      const auto found = std::find_if(kinds.begin(), kinds.end(), [&](const auto& kind) {
+        return kind.first == violation.what;
+      });
+      if (found != kinds.end()) {
+        found->second += violation.times;
+      } else if (kinds.size() < most_kinds) {
+        kinds.emplace_back(violation.what, violation.times);
+      } else {
+        rest += violation.times;
+      }
     }
+  }
+  for (const auto& [what, times] : kinds) {
+    note(name() + ": the hardware does not put up with this: " + what +
+         (times > 1 ? " (" + std::to_string(times) + " times)" : ""));
+  }
+  if (rest > 0) {
+    note(name() + ": and " + cli::count_of(rest, "thing") + " more of that sort");
   }
 }
 
@@ -253,24 +319,34 @@ void Panel::tell_lost_bytes() {
   };
   tell(terminal_->lost(), " lost: nobody read its serial port");
   tell(terminal_->unheard(), " lost: its serial port was unplugged");
-  tell(terminal_->garbled(), " garbled: its serial port was set to another rate than the board's");
+  tell(terminal_->garbled_by_wrong_rate(),
+       " garbled: its serial port was set to another rate than the board's");
 }
 
 // --- what can be done to it ----------------------------------------------------------------------
 
+std::string Panel::pin_name(int number) const {
+  return sim::pin_name(board_.kind(), number);
+}
+
 int Panel::number_of(const PinName& pin) const {
-  if (pin.analog) {
-    return board_.analog_pin(pin.number);
+  return sim_tool::number_of(board_.kind(), pin);
+}
+
+int Panel::number_to_drive(const PinName& pin) const {
+  const int number = number_of(pin);
+  if (number == interrupt_pin_) {
+    throw std::invalid_argument(name() + ": pin " + pin_name(number) +
+                                " is driven by the chip, whose INT is there; see --int");
   }
-  static_cast<void>(board_.pin(pin.number));  // refuses one that is not there
-  return pin.number;
+  return number;
 }
 
 void Panel::check(const Action& action) const {
   if (const auto* const press = std::get_if<Press>(&action)) {
-    static_cast<void>(number_of(press->pin));
+    static_cast<void>(number_to_drive(press->pin));
   } else if (const auto* const set = std::get_if<SetPin>(&action)) {
-    static_cast<void>(number_of(set->pin));
+    static_cast<void>(number_to_drive(set->pin));
   } else if (const auto* const analog = std::get_if<SetAnalog>(&action)) {
     static_cast<void>(board_.analog_pin(analog->channel));
   } else if (const auto* const serial = std::get_if<Serial>(&action)) {
@@ -289,19 +365,27 @@ void Panel::apply(const Action& action) {
 void Panel::do_action(const Press& press) {
   const int number = number_of(press.pin);
   board_.set_pin(number, false);
-  bus_.after(press_time, [this, number] { board_.release_pin(number); });
+  outside_[number] = {"low"};
+  bus_.after(press_time, [this, number] {
+    board_.release_pin(number);
+    outside_.erase(number);
+  });
 }
 
 void Panel::do_action(const SetPin& set) {
+  const int number = number_of(set.pin);
   if (set.high) {
-    board_.set_pin(number_of(set.pin), *set.high);
+    board_.set_pin(number, *set.high);
+    outside_[number] = {*set.high ? "high" : "low"};
   } else {
-    board_.release_pin(number_of(set.pin));
+    board_.release_pin(number);
+    outside_.erase(number);
   }
 }
 
 void Panel::do_action(const SetAnalog& set) {
   board_.set_analog(set.channel, set.volts);
+  outside_[number_of({true, set.channel})] = {fmt::format("{:.2f} V", set.volts)};
 }
 
 void Panel::do_action(const Serial& serial) {

@@ -25,10 +25,10 @@ class Panel {
 
   [[nodiscard]] const std::string& name() const { return board_.name(); }
 
-  /// Whether the board has the pins, inputs and UARTs that an action names.
+  /// Whether the board has the pins, inputs and UARTs that an action names, and they are free.
   /// @throws std::invalid_argument
   void check(const Action& action) const;
-  /// @throws std::invalid_argument: no such pin, input or UART.
+  /// @throws std::invalid_argument: as check() does.
   void apply(const Action& action);
 
   /// Reports what has lasted long enough; to be called about once in a millisecond.
@@ -58,6 +58,12 @@ class Panel {
     bool operator==(const CanState&) const = default;
   };
 
+  // What a command has put to a pin, until it is taken away.
+  struct Outside {
+    std::string what;
+    bool is_told = false;  // that it has no effect
+  };
+
   void do_action(const Press& press);
   void do_action(const SetPin& set);
   void do_action(const SetAnalog& set);
@@ -72,6 +78,7 @@ class Panel {
   void pin_changed(int number, sim::SimTime time, bool high);
   static void pulse_ended(Pin& pin, sim::SimTime width);
   void look_at_pin(int number, Pin& pin);
+  void look_outside();
   void serial_byte(int uart, std::uint8_t byte);
   void end_line(int uart, Line& line);
   void look_at_chip();
@@ -79,18 +86,26 @@ class Panel {
   void show_terminal();
   void plug_terminal(bool in);
   void tell_lost_bytes();
+  void tell_unused_chip();
+  void tell_violations();
   [[nodiscard]] CanState can_state();
+  [[nodiscard]] std::string pin_name(int number) const;
   [[nodiscard]] int number_of(const PinName& pin) const;
+  [[nodiscard]] int number_to_drive(const PinName& pin) const;
 
   sim::CanBus& bus_;
   std::uint32_t bitrate_bps_;
   Report& report_;
   sim::Board board_;
+  int select_pin_;
+  std::optional<int> interrupt_pin_;
   std::map<int, Pin> pins_;
+  std::map<int, Outside> outside_;
   std::map<int, Line> lines_;
   CanState state_;        // as it is
   CanState state_shown_;  // as it was reported
   sim::SimTime state_since_{0};
+  std::uint32_t other_bitrate_bps_ = 0;  // than the bus has, as it was told last
   bool was_in_loopback_ = false;
   std::uint64_t overflows_seen_ = 0;
   std::uint64_t overflows_ = 0;

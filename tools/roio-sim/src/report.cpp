@@ -30,10 +30,12 @@ std::string printable(std::string_view text) {
 
 class TextReport final : public Report {
  public:
-  void servo(sim::SimTime /*time*/, const std::string& board, int pin, int degrees) override {
+  void servo(sim::SimTime /*time*/, const std::string& board, const std::string& pin,
+             int degrees) override {
     line("{}: servo: pin {} at {} degrees\n", board, pin, degrees);
   }
-  void pin(sim::SimTime /*time*/, const std::string& board, int pin, bool high) override {
+  void pin(sim::SimTime /*time*/, const std::string& board, const std::string& pin,
+           bool high) override {
     line("{}: output: pin {} {}\n", board, pin, high ? "high" : "low");
   }
   void serial(sim::SimTime /*time*/, const std::string& board, int uart,
@@ -78,10 +80,12 @@ class JsonReport final : public Report {
  public:
   using Json = nlohmann::ordered_json;
 
-  void servo(sim::SimTime time, const std::string& board, int pin, int degrees) override {
+  void servo(sim::SimTime time, const std::string& board, const std::string& pin,
+             int degrees) override {
     line({{"type", "servo"}, {"board", board}, {"pin", pin}, {"degrees", degrees}}, time);
   }
-  void pin(sim::SimTime time, const std::string& board, int pin, bool high) override {
+  void pin(sim::SimTime time, const std::string& board, const std::string& pin,
+           bool high) override {
     line({{"type", "output"}, {"board", board}, {"pin", pin}, {"high", high}}, time);
   }
   void serial(sim::SimTime time, const std::string& board, int uart,

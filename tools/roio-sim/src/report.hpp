@@ -34,8 +34,10 @@ class Report {
   Report& operator=(const Report&) = delete;
   virtual ~Report() = default;
 
-  virtual void servo(sim::SimTime time, const std::string& board, int pin, int degrees) = 0;
-  virtual void pin(sim::SimTime time, const std::string& board, int pin, bool high) = 0;
+  virtual void servo(sim::SimTime time, const std::string& board, const std::string& pin,
+                     int degrees) = 0;
+  virtual void pin(sim::SimTime time, const std::string& board, const std::string& pin,
+                   bool high) = 0;
   /// @param uart as Arduino counts them: 0 is Serial. @param text a line without its end, any
   /// bytes.
   virtual void serial(sim::SimTime time, const std::string& board, int uart,

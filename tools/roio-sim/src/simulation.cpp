@@ -21,6 +21,7 @@
 #include "interrupt.hpp"
 #include "pace.hpp"
 #include "panel.hpp"
+#include "record_format.hpp"
 #include "report.hpp"
 
 namespace roio::sim_tool {
@@ -35,6 +36,7 @@ constexpr sim::SimTime step = 1ms;
 constexpr std::chrono::nanoseconds tick = 1ms;
 constexpr Clock::duration between_complaints = 1s;
 constexpr std::size_t most_lines_ahead = 64;
+constexpr std::uint64_t most_refusals_told = 20;
 
 // A bus that somebody else has opened before runs as it does; it works, but for holding up who
 // sends too much.
@@ -91,14 +93,23 @@ class Script {
   }
   void wait_until(sim::SimTime time) { resume_ = time; }
 
+  // A person sees each of his own. A script that has gone wrong is not to fill a disk.
   void refuse(const std::string& why) {
-    note(why);
-    refused_any_ = true;
+    if (++refused_ <= most_refusals_told || is_of_a_person()) {
+      note(why);
+    }
+  }
+  void finish() const {
+    if (refused_ > most_refusals_told && !is_of_a_person()) {
+      note("and " + cli::count_of(refused_ - most_refusals_told, "command") +
+           " more that could not be done");
+    }
   }
   /// A person at a terminal has seen it and gone on; a script has not.
-  [[nodiscard]] bool has_failed() const { return refused_any_ && ::isatty(STDIN_FILENO) != 1; }
+  [[nodiscard]] bool has_failed() const { return refused_ > 0 && !is_of_a_person(); }
 
  private:
+  static bool is_of_a_person() { return ::isatty(STDIN_FILENO) == 1; }
   // A program in the background that reads its terminal is stopped.
   static bool is_background() {
     const pid_t foreground = ::tcgetpgrp(STDIN_FILENO);
@@ -116,7 +127,7 @@ class Script {
   std::deque<Instruction> due_;
   cli::LineReader reader_{STDIN_FILENO};
   bool at_end_ = false;
-  bool refused_any_ = false;
+  std::uint64_t refused_ = 0;
   sim::SimTime resume_{0};
 };
 
@@ -274,6 +285,7 @@ class Simulation {
     for (const auto& panel : panels_) {
       panel->finish();
     }
+    script_.finish();
     const sim::BusStatistics statistics = bus_.statistics();
     Summary summary;
     summary.time = bus_.now();

@@ -40,6 +40,16 @@ const char* to_string(BoardKind kind);
 /// "atmega328p", "atmega32u4", "atmega2560".
 const char* mcu_of(BoardKind kind);
 
+// Pins have Arduino's numbers, and some have two: a Leonardo's 6 is 25, too, for analogRead(A7).
+// All throw std::invalid_argument for a pin or an input that is not there.
+
+/// The number of A0, A1...
+int analog_pin(BoardKind kind, int channel);
+/// The first of a pin's numbers.
+int main_pin(BoardKind kind, int pin);
+/// As it is printed on the board: "6", "A1". The Leonardo's own lights are "RXLED" and "TXLED".
+std::string pin_name(BoardKind kind, int pin);
+
 struct BoardOptions {
   std::string name{};                    ///< In error texts; empty: the kind and the file.
   int chip_select_pin = 10;              ///< Arduino's number.
@@ -74,7 +84,8 @@ class Board {
 
   /// Powered on right now.
   /// @throws std::runtime_error: no such file, not an AVR's program, another MCU's, or too big.
-  ///         std::invalid_argument: no such pin on this board.
+  ///         std::invalid_argument: no such pin on this board, or chip select and INT where they
+  ///         cannot be: on one another, on SPI's own pins.
   Board(CanBus& bus, BoardKind kind, const std::filesystem::path& elf,
         const BoardOptions& options = {});
   ~Board();
@@ -105,6 +116,7 @@ class Board {
   void on_spi(std::function<void(SimTime, std::uint8_t out, std::uint8_t in)> listener);
   /// What the program does that a real board does not put up with: SCK or MOSI that is no output,
   /// an SPI mode that the chip does not know, a byte written while another is under way.
+  /// Each kind is there once, with how often it came.
   [[nodiscard]] const std::vector<Mcp2515Violation>& violations() const;
 
   // --- pins: Arduino's numbers. All throw std::invalid_argument for one that is not there --------

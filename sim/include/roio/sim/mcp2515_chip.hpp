@@ -32,6 +32,7 @@ struct Mcp2515Options {
 struct Mcp2515Violation {
   SimTime time;
   std::string what;
+  std::uint64_t times = 1;  ///< For one that is noted once, whenever it comes again.
 };
 
 /// What befell the chip since it was made; no register can tell these.
@@ -91,6 +92,9 @@ class Mcp2515Chip : private ControllerClient {
   [[nodiscard]] std::uint32_t bitrate_bps() const;
   [[nodiscard]] const Mcp2515Events& events() const { return events_; }
   [[nodiscard]] const std::vector<Mcp2515Violation>& violations() const { return violations_; }
+  /// How many there were; violations() has the first `most_violations`.
+  [[nodiscard]] std::uint64_t violation_count() const { return violation_count_; }
+  static constexpr std::size_t most_violations = 10'000;
   [[nodiscard]] Controller& controller() { return controller_; }
   /// Called with every frame that was moved into a receive buffer.
   void on_accepted(std::function<void(const Frame&)> listener) {
@@ -206,6 +210,7 @@ class Mcp2515Chip : private ControllerClient {
   std::function<void(const Frame&)> sent_listener_;
   Mcp2515Events events_;
   std::vector<Mcp2515Violation> violations_;
+  std::uint64_t violation_count_ = 0;
 };
 
 const char* to_string(Mcp2515Chip::OperationMode mode);

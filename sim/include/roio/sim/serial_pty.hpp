@@ -62,6 +62,10 @@ class SerialPty {
   [[nodiscard]] std::uint64_t unheard() const;
   /// Bytes sent, either way, at a rate that the other end did not have.
   [[nodiscard]] std::uint64_t garbled() const;
+  /// Of these the ones whose program had a wrong rate: no byte has come through for 2 s or since it
+  /// was plugged in. The rest is a change of rate, which two ends never make at the same moment;
+  /// a protocol that changes it expects that, and repeats.
+  [[nodiscard]] std::uint64_t garbled_by_wrong_rate() const;
 
  private:
   class Line;

@@ -1,0 +1,18 @@
+/// Where the chip of a board can be.
+#ifndef ROIO_SIM_BOARD_WIRING_CHECK_HPP
+#define ROIO_SIM_BOARD_WIRING_CHECK_HPP
+
+#include <roio/sim/board.hpp>
+
+#include "avr/board_model.hpp"
+
+namespace roio::sim {
+
+/// @throws std::invalid_argument: chip select or INT on a pin that is not there or SPI's own, or
+/// both
+///         on one.
+void check_wiring(const BoardModel& model, const BoardOptions& options);
+
+}  // namespace roio::sim
+
+#endif
