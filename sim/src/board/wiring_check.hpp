@@ -8,9 +8,8 @@
 
 namespace roio::sim {
 
-/// @throws std::invalid_argument: chip select or INT on a pin that is not there or SPI's own, or
-/// both
-///         on one.
+/// @throws std::invalid_argument: chip select or INT is on a pin that the board does not have or
+///         that is SPI's own, or both are on one pin.
 void check_wiring(const BoardModel& model, const BoardOptions& options);
 
 }  // namespace roio::sim
