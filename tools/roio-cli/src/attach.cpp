@@ -67,7 +67,7 @@ std::unique_ptr<Bus> open_bus(const std::string& text, const BusUrl& url) {
       throw;
     }
     throw UsageError(url.target + ": no such network interface; `ip link add " + url.target +
-                     " type vcan; ip link set " + url.target + " up` makes a virtual one");
+                     " type vcan; ip link set " + url.target + " up` makes a virtual one, and local:NAME needs none");
   }
 }
 
