@@ -60,6 +60,7 @@ class LocalBus final : public Bus {
   [[nodiscard]] int fd() const noexcept override { return queue_.readable().fd(); }
   [[nodiscard]] BusState state() const override;
   [[nodiscard]] Statistics statistics() const override;
+  [[nodiscard]] std::optional<std::size_t> listeners() const override;
   void cancel() noexcept override { waits_.cancel(); }
   void resume() noexcept override { waits_.resume(); }
   void close() noexcept override;
@@ -242,6 +243,13 @@ Statistics LocalBus::statistics() const {
     statistics.dropped += connection_->page.counters().dropped.load(std::memory_order_relaxed);
   }
   return statistics;
+}
+
+std::optional<std::size_t> LocalBus::listeners() const {
+  const std::lock_guard lock(mutex_);
+  return connection_ ? std::optional<std::size_t>(
+                           connection_->page.counters().listeners.load(std::memory_order_relaxed))
+                     : std::nullopt;
 }
 
 void LocalBus::close() noexcept {

@@ -55,6 +55,7 @@ void Hub::run() {
                           .count();
     accept_clients();
     read_clients();
+    note_listeners();
     transmit();
     flush_clients();
     report_done();
@@ -177,7 +178,7 @@ void Hub::greet(HubClient& client, const Hello& hello) {
   } else {
     try {
       auto station = std::make_shared<Station>(hello.client);
-      client.welcome(station, hello.rejoining != 0, Welcome{bitrate, window()});
+      client.welcome(station, hello.rejoining != 0, Welcome{bitrate, window()}, listeners());
       medium_.attach(std::move(station));
     } catch (const std::system_error&) {
       client.stream().close();  // it will ask again, and see its own error if this goes on
@@ -193,6 +194,19 @@ void Hub::take_frame(HubClient& client, const OfferedFrame& offered) {
     return;
   }
   client.station()->add(lane_of(*frame), {*frame, offered.sequence});
+}
+
+std::uint64_t Hub::listeners() const {
+  return static_cast<std::uint64_t>(std::count_if(
+      clients_.begin(), clients_.end(), [](const auto& client) { return client->listens(); }));
+}
+
+// Before anything is carried: who then looks knows of all who were to have it.
+void Hub::note_listeners() {
+  const std::uint64_t all = listeners();
+  for (const auto& client : clients_) {
+    client->note_listeners(all - (client->listens() ? 1 : 0));
+  }
 }
 
 bool Hub::must_hold() const {

@@ -40,7 +40,8 @@ std::vector<std::string> matches(const std::string& pattern) {
 // Names below /dev/serial/by-path hold colons, and never one before a slash.
 std::size_t end_of_first(std::string_view patterns) {
   std::size_t end = patterns.find(':');
-  while (end < patterns.size() && end + 1 < patterns.size() && patterns[end + 1] != '/') {
+  while (end < patterns.size() && end + 1 < patterns.size() && patterns[end + 1] != '/' &&
+         patterns[end + 1] != ':') {
     end = patterns.find(':', end + 1);
   }
   return std::min(end, patterns.size());

@@ -15,6 +15,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -134,6 +135,10 @@ class Bus {
 
   [[nodiscard]] virtual BusState state() const = 0;
   [[nodiscard]] virtual Statistics statistics() const = 0;
+
+  /// How many others receive from this bus, as the hub of a local bus last told. None: nobody can
+  /// tell, as on every other kind of bus, or while one hub takes over from another.
+  [[nodiscard]] virtual std::optional<std::size_t> listeners() const { return std::nullopt; }
 
   /// Makes the waits of now and later return cancelled until resume(). May be called from a signal
   /// handler. A receive() that finds frames waiting, and a send() that finds room, still take them.
