@@ -87,6 +87,24 @@ TEST(LocalBus, TellsHowManyOthersListen) {
   EXPECT_TRUE(becomes(*sender, 0));
 }
 
+TEST(LocalBus, CountsWhatNobodyElseHad) {
+  const std::string name = "local:" + unique_name();
+  const Frame frame{0x123, FrameKind::standard, 0, {}};
+  const auto sender = open(name, {.send_only = true});
+  ASSERT_EQ(sender->send(frame), Result::ok);
+  for (const auto end = std::chrono::steady_clock::now() + 30s;
+       sender->statistics().unheard == 0 && std::chrono::steady_clock::now() < end;) {
+    std::this_thread::sleep_for(1ms);
+  }
+  EXPECT_EQ(sender->statistics().unheard, 1U);
+  const auto listener = open(name);
+  ASSERT_EQ(sender->send(frame), Result::ok);
+  Received received{};
+  ASSERT_EQ(listener->receive(received, 30s), Result::ok);
+  sender->close();
+  EXPECT_EQ(sender->statistics().unheard, 1U) << "who comes later has not had it";
+}
+
 TEST(LocalBus, ANewHubTellsHowManyListen) {
   const std::string name = "local:" + unique_name();
   auto hub = open(name, {.send_only = true});

@@ -240,7 +240,9 @@ Statistics LocalBus::statistics() const {
   Statistics statistics = statistics_;
   queue_.add_to(statistics);
   if (connection_) {
-    statistics.dropped += connection_->page.counters().dropped.load(std::memory_order_relaxed);
+    const HubCounters& counters = connection_->page.counters();
+    statistics.dropped += counters.dropped.load(std::memory_order_relaxed);
+    statistics.unheard += counters.unheard.load(std::memory_order_relaxed);
   }
   return statistics;
 }
@@ -376,6 +378,7 @@ void LocalBus::disconnect() {
   const std::uint64_t lost = counters.dropped.load(std::memory_order_relaxed) +
                              counters.at_risk.load(std::memory_order_relaxed);
   statistics_.dropped += lost;
+  statistics_.unheard += counters.unheard.load(std::memory_order_relaxed);
   queue_.lose(lost - std::min(lost, announced_));
   connection_.reset();
 }

@@ -14,6 +14,7 @@ namespace roio::local {
 struct HubCounters {
   std::atomic<std::uint64_t> dropped;    ///< Due to the client and dropped, its queue being full.
   std::atomic<std::uint64_t> at_risk;    ///< Reported done to their senders, still only in the hub.
+  std::atomic<std::uint64_t> unheard;    ///< The client's own, carried while nobody else listened.
   std::atomic<std::uint64_t> listeners;  ///< Other clients that have filters.
 };
 static_assert(std::atomic<std::uint64_t>::is_always_lock_free, "shared between processes");

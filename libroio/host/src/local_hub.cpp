@@ -231,10 +231,23 @@ void Hub::fan_out(const Medium::Transmission& transmission) {
   const std::int64_t time_ns =
       std::chrono::nanoseconds(end.time_since_epoch()).count() + wall_offset_ns_;
   const Deliver deliver{0, from->sender(), offer.sequence, time_ns, to_wire(offer.frame)};
+  HubClient* sender = nullptr;
+  bool is_heard = false;
   for (const auto& client : clients_) {
-    if (client->greeted() && client->station() != from && client->wants(tagged)) {
+    if (!client->greeted()) {
+      continue;
+    }
+    if (client->station() == from) {
+      sender = client.get();
+      continue;
+    }
+    is_heard = is_heard || client->listens();
+    if (client->wants(tagged)) {
       client->deliver(deliver, bus_number_, now_);
     }
+  }
+  if (!is_heard && sender != nullptr) {
+    sender->note_unheard();
   }
   if (history_.size() == history_limit) {
     history_.pop_front();
@@ -246,6 +259,11 @@ void Hub::fan_out(const Medium::Transmission& transmission) {
 // A client that comes over late would miss what was carried before it came; what it had from the
 // last hub it leaves out itself.
 void Hub::replay(HubClient& client) {
+  if (client.listens()) {
+    for (const auto& other : clients_) {
+      other->forget_unheard();
+    }
+  }
   client.drop(bus_number_ - history_.size());
   std::uint64_t number = bus_number_ - history_.size();
   for (const Deliver& deliver : history_) {

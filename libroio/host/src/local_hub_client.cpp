@@ -53,6 +53,16 @@ void HubClient::note_listeners(std::uint64_t count) {
   }
 }
 
+void HubClient::note_unheard() {
+  page_->counters().unheard.fetch_add(1, std::memory_order_relaxed);
+}
+
+void HubClient::forget_unheard() {
+  if (page_) {
+    page_->counters().unheard.store(0, std::memory_order_relaxed);
+  }
+}
+
 bool HubClient::wants(std::uint32_t tagged) const {
   return std::any_of(filters_.begin(), filters_.end(),
                      [=](const SocketCanFilter& filter) { return accepts(filter, tagged); });

@@ -46,6 +46,9 @@ class HubClient {
   [[nodiscard]] bool listens() const { return stream_.open() && !filters_.empty(); }
   /// Publishes how many listen, itself left out.
   void note_listeners(std::uint64_t count);
+  /// One of its frames has been carried and nobody was there to have it; all these have been had.
+  void note_unheard();
+  void forget_unheard();
   /// True once, after a client has come over from another hub: it is owed what that one missed.
   [[nodiscard]] bool take_replay_due() { return std::exchange(replay_due_, false); }
   /// @return false: more than was ever delivered.

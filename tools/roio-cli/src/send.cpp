@@ -67,7 +67,6 @@ class Sender {
     while (!frames.empty()) {
       const Transfer transfer = bus_.send(frames, options_.timeout);
       sent_ += transfer.count;
-      say_when_nobody_listens();
       frames = frames.subspan(transfer.count);
       if (Interrupt::signal() != 0 || transfer.result == Result::cancelled) {
         return false;
@@ -82,17 +81,8 @@ class Sender {
     return true;
   }
 
-  // On a local bus, sending into the void is no error, as on a wire nobody would acknowledge it.
-  void say_when_nobody_listens() {
-    if (!said_ && sent_ > 0 && bus_.listeners() == 0) {
-      note(bus_.name() + ": nobody else listens there, so nobody has this message");
-      said_ = true;
-    }
-  }
-
   const SendOptions& options_;
   Bus& bus_;
-  bool said_ = false;
   std::chrono::steady_clock::time_point next_;  // when the next frame is due
   std::uint64_t sent_ = 0;
 };
@@ -191,9 +181,22 @@ Unsent send_lines(Sender& sender, Address source) {
   return {lines.refused(), lines.passed_over()};
 }
 
+// Who was on the bus under a hub that has just gone comes over to this process's within moments,
+// and is given what it missed.
+void wait_for_those_who_come_over(const Bus& bus) {
+  const auto end = std::chrono::steady_clock::now() + std::chrono::milliseconds(250);
+  while (bus.statistics().unheard > 0 && std::chrono::steady_clock::now() < end &&
+         Interrupt::sleep_until(std::chrono::steady_clock::now() + look_every)) {
+  }
+}
+
 // What send() accepted and close() could not hand over.
 void close(Bus& bus) {
+  wait_for_those_who_come_over(bus);
   bus.close();
+  if (const std::uint64_t unheard = bus.statistics().unheard; unheard > 0) {
+    note(bus.name() + ": nobody else was there to have " + count_of(unheard, "message"));
+  }
   if (const std::uint64_t unsent = bus.statistics().unsent; unsent > 0) {
     throw Failure(bus.name() + ": " + count_of(unsent, "message") +
                   " not handed over before the bus closed");

@@ -79,6 +79,7 @@ struct Statistics {
   std::uint64_t duplicates = 0;  ///< Frames come a second time over a new hub, not delivered again.
   std::uint64_t unsent = 0;      ///< Frames accepted by send() and lost on close(), or with a hub
                                  ///< or a bridge; such that a bridge gave up, or cannot tell of.
+  std::uint64_t unheard = 0;     ///< Frames carried on a local bus while nobody else received.
   std::uint64_t overruns = 0;    ///< Reports of a controller that it lost frames, how many unsaid.
 };
 
