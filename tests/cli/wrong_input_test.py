@@ -281,7 +281,7 @@ class InformationTest(CliTest):
         self.assertRegex(out, r"^roio-cli \d+\.\d+\.\d+\n$")
 
     def test_help_goes_to_standard_output_and_has_examples(self):
-        for command in ([], ["help"], ["send"], ["dump"], ["buses"], ["bridge"], ["bridge", "show"],
+        for command in ([], ["send"], ["dump"], ["buses"], ["bridge"], ["bridge", "show"],
                         ["bridge", "set"], ["bridge", "identify"], ["bridge", "attach"]):
             for option in ("--help", "-h"):
                 status, out, err = self.run_cli(*command, option)

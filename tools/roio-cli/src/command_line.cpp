@@ -16,7 +16,7 @@ namespace {
 constexpr const char* main_examples = R"(Examples:
   roio-cli dump -n 1 local:robot &             one message, and end
   roio-cli send --wait local:robot 0.2 5A2D00  three bytes to node 2 of subnet 0
-  roio-cli dump can0 to=0.2 urgent             urgent messages to it, on SocketCAN
+  roio-cli dump can0 to=0.2 urgent             urgent messages, on SocketCAN
   roio-cli dump serial:auto                    a bridge on a serial port
   roio-cli buses                               what there is to be opened
   roio-cli bridge attach /dev/ttyACM0 vcan0    a bridge, for every Linux program
