@@ -11,7 +11,7 @@ class Category final : public std::error_category {
   [[nodiscard]] std::string message(int code) const override {
     switch (static_cast<Errc>(code)) {
       case Errc::bad_url:
-        return "not a bus; expected an interface such as can0, or local:NAME";
+        return "not the name of a bus";
       case Errc::no_such_interface:
         return "no such network interface; `ip link` lists them, and local:NAME needs none";
       case Errc::not_a_can_interface:
@@ -22,7 +22,7 @@ class Category final : public std::error_category {
       case Errc::not_supported:
         return "this version of Roio cannot open such a bus";
       case Errc::bitrate_mismatch:
-        return "the bus already runs at another bit rate";
+        return "not the pace of this bus; its name alone, without bitrate, joins it as it is";
       case Errc::version_mismatch:
         return "the bus is run by an incompatible version of Roio";
       case Errc::not_permitted:
@@ -41,8 +41,7 @@ class Category final : public std::error_category {
       case Errc::port_in_use:
         return "another program has the port open; `fuser -v` with the port's name tells which";
       case Errc::port_not_permitted:
-        return "no permission to open the port; join its group with `sudo usermod -aG dialout "
-               "$USER`, and log in again";
+        return "no permission to open the port";
       case Errc::no_bridge:
         return "no bridge answered in time; is the board plugged in, and bridge_usb on it? "
                "`scripts/flash` puts it there";
@@ -50,6 +49,8 @@ class Category final : public std::error_category {
         return "more than one bridge; say which one, such as serial:/dev/ttyACM0";
       case Errc::bridge_refused:
         return "the bridge refused";
+      case Errc::relative_path:
+        return "expected a path that begins with /";
     }
     return "unknown Roio error " + std::to_string(code);
   }

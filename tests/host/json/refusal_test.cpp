@@ -245,6 +245,18 @@ TEST(JsonRefusal, NoJson) {
        R"(JSON: ends too early, after 11 bytes, in or after field "type")", 11},
       {"more", std::string(good) + "x", R"(JSON: "x" after the message; expected nothing more)",
        end},
+      {"a word that begins as true does", std::string(good) + " trailing",
+       R"(JSON: "trailing" after the message; expected nothing more)", end + 1},
+      {"words, the first of which is JSON", std::string(good) + "12 x",
+       R"(JSON: "12 x" after the message; expected nothing more)", end},
+      {"half a text", std::string(good) + " \"abc",
+       R"(JSON: "\"abc" after the message; expected nothing more)", end + 1},
+      {"a brace in a text of it", with("Roio", "}") + " }",
+       R"(JSON field "type": "}"; expected "Roio")", 0},
+      {"a word that begins as null does", with(":2", ":nope"),
+       R"(JSON: not valid at byte 45, in or after field "address": )"
+       R"("nope,\"subnet\":0,\"messageLength\":1,\"data\":[7]}")",
+       45},
       {"another message", std::string(good) + "\n{}",
        R"(JSON: "{}" after the message; expected nothing more)", end + 1},
       {"not a number", with(":2", ":NaN"),
@@ -256,9 +268,9 @@ TEST(JsonRefusal, NoJson) {
        R"("Infinity,\"subnet\":0,\"messageLength\":1,\"data\":[7]..." (49 bytes))",
        45},
       {"a leading zero", with(":2", ":02"),
-       R"(JSON: not valid at byte 46, in or after field "address": )"
-       R"("2,\"subnet\":0,\"messageLength\":1,\"data\":[7]}")",
-       46},
+       R"(JSON: not valid at byte 45, in or after field "address": )"
+       R"("02,\"subnet\":0,\"messageLength\":1,\"data\":[7]}")",
+       45},
       {"a plus", with(":2", ":+2"),
        R"(JSON: not valid at byte 45, in or after field "address": )"
        R"("+2,\"subnet\":0,\"messageLength\":1,\"data\":[7]}")",

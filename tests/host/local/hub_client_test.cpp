@@ -20,7 +20,7 @@ class OneClient : public ::testing::Test {
     ASSERT_EQ(::socketpair(AF_UNIX, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0, ends.data()), 0);
     other_end_ = UniqueFd(ends[1]);
     client_ = std::make_unique<HubClient>(UniqueFd(ends[0]), start);
-    client_->welcome(std::make_shared<Station>(1), false, Welcome{0, 4096});
+    client_->welcome(std::make_shared<Station>(1), false, Welcome{0, 4096}, 0);
     std::array<std::uint8_t, 64> greeting{};
     receive_with_fd(other_end_.get(), greeting, page_fd_);
     page_.emplace(std::move(page_fd_));

@@ -57,23 +57,88 @@ mode_t mode_of(const std::filesystem::path& path) {
   return status.st_mode & ACCESSPERMS;
 }
 
+// Bounded; the hub needs a moment to see who came and went.
+bool becomes(const Bus& bus, std::size_t listeners) {
+  for (const auto end = std::chrono::steady_clock::now() + 30s;
+       std::chrono::steady_clock::now() < end; std::this_thread::sleep_for(1ms)) {
+    if (bus.listeners() == listeners) {
+      return true;
+    }
+  }
+  return false;
+}
+
+TEST(LocalBus, TellsHowManyOthersListen) {
+  const std::string name = "local:" + unique_name();
+  const auto sender = open(name, {.send_only = true});
+  EXPECT_EQ(sender->listeners(), 0U) << "it does not listen itself";
+  const auto another_sender = open(name, {.send_only = true});
+  EXPECT_EQ(another_sender->listeners(), 0U);
+  auto listener = open(name);
+  EXPECT_EQ(listener->listeners(), 0U) << "the two others only send";
+  EXPECT_TRUE(becomes(*sender, 1)) << "told without being asked";
+  EXPECT_EQ(open(name, {.send_only = true})->listeners(), 1U) << "known when open() returns";
+  another_sender->set_filters(std::array{SocketCanFilter{0, 0}});
+  EXPECT_TRUE(becomes(*sender, 2));
+  EXPECT_TRUE(becomes(*listener, 1));
+  another_sender->set_filters({});
+  EXPECT_TRUE(becomes(*sender, 1));
+  listener.reset();
+  EXPECT_TRUE(becomes(*sender, 0));
+}
+
+TEST(LocalBus, CountsWhatNobodyElseHad) {
+  const std::string name = "local:" + unique_name();
+  const Frame frame{0x123, FrameKind::standard, 0, {}};
+  const auto sender = open(name, {.send_only = true});
+  ASSERT_EQ(sender->send(frame), Result::ok);
+  for (const auto end = std::chrono::steady_clock::now() + 30s;
+       sender->statistics().unheard == 0 && std::chrono::steady_clock::now() < end;) {
+    std::this_thread::sleep_for(1ms);
+  }
+  EXPECT_EQ(sender->statistics().unheard, 1U);
+  const auto listener = open(name);
+  ASSERT_EQ(sender->send(frame), Result::ok);
+  Received received{};
+  ASSERT_EQ(listener->receive(received, 30s), Result::ok);
+  sender->close();
+  EXPECT_EQ(sender->statistics().unheard, 1U) << "who comes later has not had it";
+}
+
+TEST(LocalBus, ANewHubTellsHowManyListen) {
+  const std::string name = "local:" + unique_name();
+  auto hub = open(name, {.send_only = true});
+  const auto listener = open(name);
+  const auto sender = open(name, {.send_only = true});
+  hub.reset();
+  EXPECT_TRUE(becomes(*sender, 1));
+}
+
+TEST(LocalBus, ARelativeFolderIsRefused) {
+  const RuntimeFolder folder("buses");
+  ::setenv("ROIO_RUNTIME_DIR", "buses", 1);
+  EXPECT_EQ(refusal("local:robot"),
+            "ROIO_RUNTIME_DIR \"buses\": expected a path that begins with /");
+  EXPECT_FALSE(std::filesystem::exists("buses"));
+}
+
+constexpr const char* another_pace =
+    "not the pace of this bus; its name alone, without bitrate, joins it as it is";
+
 TEST(LocalBus, BitRatesMustAgree) {
   const std::string name = "local:" + unique_name();
   const auto bus = open(name + "?bitrate=500000");
   EXPECT_EQ(refusal(name), "(opened)") << "no wish of its own";
   EXPECT_EQ(refusal(name + "?bitrate=500000"), "(opened)");
-  EXPECT_EQ(
-      refusal(name + "?bitrate=250000"),
-      name + "?bitrate=250000 (it runs at 500000 bit/s): the bus already runs at another bit rate");
+  EXPECT_EQ(refusal(name + "?bitrate=250000"),
+            name + "?bitrate=250000 (it runs at 500000 bit/s): " + another_pace);
 }
 
 TEST(LocalBus, ABusWithoutABitRateDoesNotGetOneLater) {
   const std::string name = "local:" + unique_name();
   const auto bus = open(name);
-  EXPECT_EQ(
-      refusal(name + "?bitrate=250000"),
-      name +
-          "?bitrate=250000 (it runs without a bit rate): the bus already runs at another bit rate");
+  EXPECT_EQ(refusal(name + "?bitrate=250000"),
+            name + "?bitrate=250000 (it runs without a bit rate): " + another_pace);
 }
 
 TEST(LocalBus, TheBitRateOutlivesTheHub) {

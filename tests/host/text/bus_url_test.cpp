@@ -1,5 +1,9 @@
 #include <gtest/gtest.h>
 
+#include <roio/bus.hpp>
+#include <system_error>
+#include <utility>
+
 #include "parsing.hpp"
 
 namespace roio {
@@ -110,7 +114,11 @@ TEST(BusUrlText, InterfaceRefusedInWords) {
        R"("socketcan:": an interface name of 0 bytes; expected 1..15, such as can0)", 10},
       {"sixteen bytes", "can456789abcdef0",
        R"("can456789abcdef0": an interface name of 16 bytes; expected 1..15, such as can0)", 0},
-      {"a path", "/dev/can0", R"("/dev/can0": "/" is not allowed in an interface name)", 0},
+      {"a serial port without its kind", "/dev/ttyACM0",
+       R"("/dev/ttyACM0": a path is no interface; )"
+       R"(expected serial:/dev/ttyACM0 for the bridge on that serial port)",
+       0},
+      {"a path", "can0/x", R"("can0/x": "/" is not allowed in an interface name)", 4},
       {"a space", "socketcan:can 0",
        R"("socketcan:can 0": " " is not allowed in an interface name)", 13},
       {"a zero byte, which would end it", std::string("can\0x", 5),
@@ -225,6 +233,39 @@ TEST(BusUrlText, SerialRefusedInWords) {
   };
   for (const Refusal& row : cases) {
     expect_refused(row);
+  }
+}
+
+std::string refusal(const std::string& url) {
+  try {
+    static_cast<void>(open(url));
+  } catch (const std::system_error& error) {
+    return error.what();
+  }
+  return "(opened)";
+}
+
+TEST(BusUrlText, OpenSaysOnceWhatWasExpected) {
+  EXPECT_EQ(refusal("tcp:host"),
+            R"(bus "tcp:host": unknown kind of bus "tcp"; expected an interface such as can0, )"
+            R"(local:NAME or serial:DEVICE: not the name of a bus)");
+}
+
+// Whether the kernel knows CAN or not.
+TEST(BusUrlText, OpenGuessesWhatAWordWasMeantToBe) {
+  const std::pair<const char*, const char*> cases[] = {
+      {"robot9", "robot9 (did you mean local:robot9?): "},
+      {"local", "local (did you mean local:robot?): "},
+      {"ttyACM9", "ttyACM9 (did you mean serial:/dev/ttyACM9?): "},
+      {"auto", "auto (did you mean serial:auto?): "},
+      {"serial", "serial (did you mean serial:auto?): "},
+      {"vcan99", "vcan99: "},
+      {"no bus!", "bus \"no bus!\": "},
+      {"odd_\xC3\xA4", "odd_\xC3\xA4: "},
+  };
+  for (const auto& [name, begin] : cases) {
+    const std::string text = refusal(name);
+    EXPECT_EQ(text.substr(0, std::string(begin).size()), begin);
   }
 }
 

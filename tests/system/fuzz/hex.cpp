@@ -14,9 +14,12 @@ void check(std::string_view text) {
   const auto again = parse_hex(to_hex(bytes->data.data(), bytes->length));
   require(again && again->length == bytes->length && again->data == bytes->data,
           "the bytes come back");
-  const auto dots = static_cast<std::size_t>(std::count(text.begin(), text.end(), '.'));
-  require(text.size() == 2 * std::size_t{bytes->length} + dots,
-          "nothing but digits and dots was read over");
+  const auto between =
+      static_cast<std::size_t>(std::count_if(text.begin(), text.end(), [](char character) {
+        return character == '.' || character == ' ';
+      }));
+  require(text.size() == 2 * std::size_t{bytes->length} + between,
+          "nothing but digits, dots and spaces was read over");
 }
 
 }  // namespace roio::fuzz

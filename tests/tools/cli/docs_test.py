@@ -3,8 +3,9 @@
 
 A block is one bash session: "$ " begins a command, "> " goes on with it, the rest is output. Commands
 that end with "&" run until they end by themselves; what they print stands at the block's end, in their
-order. A block after <!-- file NAME --> is a file that the blocks after it find. Blocks that name vcan0,
-themselves or in a file that they name, need real SocketCAN and are run with ROIO_CLI_ON_SOCKETCAN, the others
+order. A dump in the background that `send --wait` follows is run as it stands; for others the script waits. A
+block after <!-- file NAME --> is a file that the blocks after it find. Blocks that name vcan0, themselves or in a
+file that they name, need real SocketCAN and are run with ROIO_CLI_ON_SOCKETCAN, the others
 without. For blocks that name /dev/ttyACM0 there is a bridge on a simulated board, if there is ROIO_SIM;
 the terminal's path is longer, so with them the number of spaces does not count.
 """
@@ -90,13 +91,16 @@ ATTACH = """attach() {
 def session(commands):
     """The commands as a script that waits for what runs in the background, first to listen, then to end."""
     script, background = [ATTACH], 0
-    for command in commands:
+    for command, follower in zip(commands, commands[1:] + [""]):
         if " bridge attach " in command:
             background += 1
             script.append(f'attach "{command[:-1].strip()}" "$OUT.{background}"')
         elif command.endswith("&"):
             background += 1
             # Output that the command sends elsewhere stays there.
+            if "send --wait" in follower:
+                script.append(f'({command[:-1]}) >"$OUT.{background}" 2>&1 &')
+                continue
             script.append(f'(PATH="$LISTENERS:$PATH"; {command[:-1]}) >"$OUT.{background}" 2>&1 &')
             script.append('until [ -e "$LISTENING" ]; do sleep 0.01; done; rm "$LISTENING"')
         else:

@@ -10,9 +10,9 @@
 namespace roio::cli {
 namespace {
 
-std::string line(const Frame& frame, bool colour = false) {
+std::string line(const Frame& frame, bool colour = false, Gap gap = Gap::wide) {
   Buffer out;
-  append_frame(out, frame, colour);
+  append_frame(out, frame, colour, gap);
   return {out.data(), out.size()};
 }
 
@@ -71,10 +71,34 @@ INSTANTIATE_TEST_SUITE_P(
     [](const auto& row) { return row.param.name; });
 
 TEST(FrameText, ColumnsLineUpWhateverTheFrame) {
-  const std::size_t column = line({0, FrameKind::extended, 1, {1}}).find('[');
-  for (const FrameKind kind : {FrameKind::standard, FrameKind::standard_remote,
-                               FrameKind::extended_remote, FrameKind::error}) {
-    EXPECT_EQ(line({0x7FF, kind, 1, {1}}).find('['), column);
+  for (const Gap gap : {Gap::wide, Gap::narrow}) {
+    const std::size_t column = line({0, FrameKind::extended, 1, {1}}, false, gap).find('[');
+    for (const FrameKind kind : {FrameKind::standard, FrameKind::standard_remote,
+                                 FrameKind::extended_remote, FrameKind::error}) {
+      EXPECT_EQ(line({0x7FF, kind, 1, {1}}, false, gap).find('['), column);
+    }
+  }
+}
+
+TEST(FrameText, NarrowColumnsStandOneSpaceApart) {
+  EXPECT_EQ(line({from_0_10_to_0_2, FrameKind::extended, 2, {0x5A, 0x2D}}, false, Gap::narrow),
+            "0.10   -> 0.2    normal message [2] 5A 2D");
+  EXPECT_EQ(line({0x123, FrameKind::standard, 2, {0x11, 0x22}}, false, Gap::narrow),
+            "foreign 11-bit 123              [2] 11 22");
+  EXPECT_EQ(line({0x7FF, FrameKind::standard_remote, 4, {}}, false, Gap::narrow),
+            "foreign 11-bit 7FF              [4] remote request");
+}
+
+// A terminal has 80 columns, and so has help.
+TEST(FrameText, TheWidestMessageFitsBesideEveryTime) {
+  const Frame widest{0x07FFDFFE, FrameKind::extended, 8, {1, 2, 3, 4, 5, 6, 7, 0xFF}};
+  for (const auto mode : {TimeColumn::Mode::none, TimeColumn::Mode::absolute,
+                          TimeColumn::Mode::delta, TimeColumn::Mode::zero}) {
+    TimeColumn time(mode);
+    Buffer out;
+    time.append(out, Timestamp(std::chrono::nanoseconds(1436509052'249713'999)));
+    append_frame(out, widest, false, time.gap());
+    EXPECT_LE(out.size(), 80U) << std::string(out.data(), out.size());
   }
 }
 

@@ -16,7 +16,10 @@ constexpr Address from{0, 10};
 
 std::string frame_of(std::string_view line) {
   const auto frame = parse_input_line(line, from);
-  return frame ? to_text(*frame) : "refused";
+  if (!frame) {
+    return frame.error().message;
+  }
+  return *frame ? to_text(**frame) : "passed over";
 }
 
 TEST(InputLine, JsonWithoutASourceGetsTheSendersOwn) {
@@ -36,17 +39,75 @@ TEST(InputLine, ALogLineIsItsFrameOfWhateverKind) {
 
 TEST(InputLine, OthersAreRefusedWithWhatWasExpected) {
   const char* const expected =
-      "expected a JSON message {\"type\":\"Roio\",...} or a line of a log \"(TIME) BUS ID#DATA\"";
-  for (const char* line : {"123#1122", "# note", "[]", "0.2 5A", " "}) {
+      "expected a JSON message {\"type\":\"Roio\",...}, a frame ID#DATA, or a line of a log "
+      "\"(TIME) BUS ID#DATA\"";
+  for (const char* line : {"#123", " # note", "[]", "0.2 5A", " "}) {
     const auto frame = parse_input_line(line, from);
     ASSERT_FALSE(frame.ok()) << line;
     EXPECT_EQ(frame.error().message, expected);
   }
 }
-TEST(InputLine, AnErrorReportIsNoFrameToSend) {
-  const auto frame = parse_input_line("(1.000000) can0 20000004#0001000000000000", from);
-  ASSERT_FALSE(frame.ok());
-  EXPECT_EQ(frame.error().message, "expected a frame to send, found a controller's error report");
+TEST(InputLine, AFrameAsCansendTakesItIsTaken) {
+  EXPECT_EQ(frame_of("1000400A#5A.2D.00"), "1000400A#5A2D00");
+  EXPECT_EQ(frame_of(" 123#R4 \r"), "123#R4");
+  EXPECT_EQ(frame_of("123##01122"),
+            "frame \"123##01122\": a CAN FD frame (\"##\"); only classic CAN frames are taken");
+  EXPECT_EQ(frame_of("123#1122 x"), "frame \"123#1122 x\": \" \" is no hex digit");
+}
+
+// What `dump --json` and `dump --log` write, and what stands between.
+TEST(InputLine, JsonOfAnotherFrameIsThatFrame) {
+  for (const auto& [line, text] : {
+           std::pair{R"({"type":"CAN","kind":"standard","id":291,"length":2,"data":[17,34],)"
+                     R"("timestamp":1436509052.249713})",
+                     "123#1122"},
+           std::pair{R"({"type":"CAN","kind":"standard-remote","id":2047,"length":4,"data":[]})",
+                     "7FF#R4"},
+           std::pair{R"({"type":"CAN","kind":"extended-remote","id":0,"length":0,"data":[]})",
+                     "00000000#R"},
+           std::pair{R"({"data":[],"length":0,"id":536870911,"kind":"extended","type":"CAN"})",
+                     "1FFFFFFF#"},
+       }) {
+    EXPECT_EQ(frame_of(line), text);
+  }
+}
+TEST(InputLine, WhatTellsOfTheBusIsPassedOver) {
+  for (const char* line :
+       {R"({"type":"lost","frames":12})", R"({"type":"state","state":"down"})",
+        R"({"type":"CAN","kind":"error","id":4,"length":8,"data":[0,1,0,0,0,0,0,0]})",
+        "(1.000000) can0 20000004#0001000000000000"}) {
+    EXPECT_EQ(frame_of(line), "passed over") << line;
+  }
+}
+TEST(InputLine, JsonOfAnotherFrameIsRefusedWithTheField) {
+  for (const auto& [line, error] : {
+           std::pair{R"({"type":"CAN","id":1,"length":0,"data":[]})",
+                     R"(JSON field "kind": missing; a frame of type CAN has kind, id, length and )"
+                     R"(data)"},
+           std::pair{R"({"type":"CAN","kind":"fd","id":1,"length":0,"data":[]})",
+                     R"(JSON field "kind": expected standard, standard-remote, extended, )"
+                     R"(extended-remote or error)"},
+           std::pair{R"({"type":"CAN","kind":"standard","id":2048,"length":0,"data":[]})",
+                     R"(JSON field "id": expected an integer 0..2047)"},
+           std::pair{R"({"type":"CAN","kind":"extended","id":-1,"length":0,"data":[]})",
+                     R"(JSON field "id": expected an integer 0..536870911)"},
+           std::pair{R"({"type":"CAN","kind":"standard","id":1,"length":9,"data":[]})",
+                     R"(JSON field "length": expected an integer 0..8)"},
+           std::pair{R"({"type":"CAN","kind":"standard","id":1,"length":1,"data":[]})",
+                     R"(JSON field "data": expected an array of 1 byte, as kind and length say)"},
+           std::pair{R"({"type":"CAN","kind":"standard-remote","id":1,"length":1,"data":[5]})",
+                     R"(JSON field "data": expected an array of 0 bytes, as kind and length say)"},
+           std::pair{R"({"type":"CAN","kind":"standard","id":1,"length":1,"data":[256]})",
+                     R"(JSON field "data": expected integers 0..255)"},
+           std::pair{R"({"type":"CAN","kind":"standard","id":1,"length":0,"data":[],"di":1})",
+                     R"(JSON field "di": unknown in a frame of type CAN)"},
+           std::pair{R"({"type":"CAN","type":"CAN","kind":"standard","id":1,"length":0,"data":[]})",
+                     R"(JSON field "type": "CAN"; expected "Roio")"},
+           std::pair{R"({"type":"lost"} x)", R"(JSON field "type": "lost"; expected "Roio")"},
+           std::pair{R"({"type":"Lost"})", R"(JSON field "type": "Lost"; expected "Roio")"},
+       }) {
+    EXPECT_EQ(frame_of(line), error);
+  }
 }
 
 TEST(InputLine, BlankIsWhiteSpaceOnly) {

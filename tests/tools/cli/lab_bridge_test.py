@@ -140,7 +140,7 @@ class AttachTest(BridgeTest):
 class BusesTest(CliTest):
     def setUp(self):
         super().setUp()
-        os.environ["ROIO_SERIAL_PORTS"] = self.path("none")
+        os.environ["ROIO_SERIAL_PORTS"] = self.path("none*")
         self.addCleanup(run, "ip", "link", "set", "vcan1", "up")
 
     def test_interfaces_with_state_and_bit_rate(self):

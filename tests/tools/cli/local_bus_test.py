@@ -31,7 +31,13 @@ class SendTest(CliTest):
             ([], ["0.2", "--dec", "90", "45", "0"], bytes_5a2d00),
             (["--dec"], ["0.2", "90", "45", "0"], bytes_5a2d00),
             ([], ["0.2"], "0.10   -> 0.2     normal  message  [0]\n"),
-            ([], ["0.2", ""], "0.10   -> 0.2     normal  message  [0]\n"),
+            ([], ["0.2", "5A 2D 00"], bytes_5a2d00),
+            ([], ["0.2", "5A", "2D", "00"], bytes_5a2d00),
+            ([], ["--", "0.2", "5A2D00"], bytes_5a2d00),
+            ([], ["0.2", "--", "5A2D00"], bytes_5a2d00),
+            ([], ["1000400A#5A2D00"], bytes_5a2d00),
+            ([], ["123#DEAD"], "foreign  11-bit 123                [2]  DE AD\n"),
+            ([], ["123#R4"], "foreign  11-bit 123                [4]  remote request\n"),
             ([], ["0.*", "01"], "0.10   -> 0.*     normal  message  [1]  01\n"),
             ([], ["0.255", "01"], "0.10   -> 0.*     normal  message  [1]  01\n"),
             ([], ["31.254", "0102030405060708"],
@@ -122,8 +128,8 @@ class StdinTest(CliTest):
         lines = result[2].splitlines()
         self.assertEqual(
             lines[0],
-            'roio-cli: line 2: expected a JSON message {"type":"Roio",...} or a line of a log '
-            '"(TIME) BUS ID#DATA"',
+            'roio-cli: line 2: expected a JSON message {"type":"Roio",...}, a frame ID#DATA, or a '
+            'line of a log "(TIME) BUS ID#DATA"',
         )
         self.assertEqual(
             lines[1],
@@ -135,6 +141,28 @@ class StdinTest(CliTest):
         self.assertEqual(
             dump.result(), (0, "0.10   -> 0.2     normal  message  [1]  07\n" * 2, "")
         )
+
+    def test_a_flood_of_bad_lines_is_counted_not_named_one_by_one(self):
+        status, out, err = self.run_cli("send", BUS, "-", stdin="x\n" * 100000)
+        self.assertEqual((status, out), (1, ""))
+        lines = err.splitlines()
+        self.assertEqual([line.split(":")[1] for line in lines[:10]],
+                         [f" line {number}" for number in range(1, 11)])
+        self.assertEqual(lines[10:], [
+            "roio-cli: line 11 and others, which are not named: their number follows at the end",
+            "roio-cli: local:robot: 0 messages sent, 100000 lines refused"])
+
+    def test_what_tells_of_another_bus_is_passed_over(self):
+        dump = self.dump("-n", "1", BUS)
+        result = self.run_cli(
+            "send", BUS, "-",
+            stdin='{"type":"lost","frames":12}\n'
+            '{"type":"CAN","kind":"standard","id":291,"length":2,"data":[17,34],"timestamp":1.5}\n'
+            '{"type":"state","state":"down"}\n'
+            "(1.000000) can0 20000004#0001000000000000\n")
+        self.assertEqual(result, (0, "", "roio-cli: local:robot: 1 message sent, 3 lines passed over "
+                                         "that tell of the bus they come from\n"))
+        self.assertEqual(dump.result(), (0, "foreign  11-bit 123                [2]  11 22\n", ""))
 
     def test_a_closed_input_is_an_error_not_a_wait(self):
         done = subprocess.run(["sh", "-c", f'exec "{CLI}" send local:closed - <&-'],
@@ -171,16 +199,20 @@ class StdinTest(CliTest):
 
     def test_what_dump_writes_send_reads(self):
         for form in ("--json", "--log"):
-            dump = self.dump("-n", "2", form, BUS)
+            dump = self.dump("-n", "4", form, BUS)
             self.send("--urgent", BUS, "0.*", "0102")
+            self.send(BUS, "123#1122")
+            self.send(BUS, "1000400A#R4")
             self.send("--class", "system", "--from", "3.4", BUS, "0.2")
             out, _ = dump.process.communicate(timeout=GUARD)
-            again = self.dump("-n", "2", BUS)
+            again = self.dump("-n", "4", BUS)
             self.send(BUS, "-", stdin=out)
             self.assertEqual(
                 again.result(),
                 (0,
                  "0.10   -> 0.*     urgent  message  [2]  01 02\n"
+                 "foreign  11-bit 123                [2]  11 22\n"
+                 "foreign  29-bit 1000400A           [4]  remote request\n"
                  "3.4    -> 0.2     normal  system   [0]\n",
                  ""),
             )
@@ -217,12 +249,18 @@ class FormTest(CliTest):
     def test_times(self):
         for mode, stamp in (("a", "(0000000000.000000)"), ("d", "(000.000000)"),
                             ("z", "(000.000000)")):
-            self.assertEqual(
-                self.shown("-t", mode),
-                f"{stamp} 0.10   -> 0.2     normal  message  [3]  5A 2D 00\n"
-                f"{stamp} foreign  11-bit 123                [4]  remote request\n"
-                f"{stamp} foreign  29-bit 1C00400A           [1]  11  (reserved class)\n",
-            )
+            lines = [
+                "0.10   -> 0.2     normal  message  [3]  5A 2D 00\n",
+                "foreign  11-bit 123                [4]  remote request\n",
+                "foreign  29-bit 1C00400A           [1]  11  (reserved class)\n",
+            ]
+            if mode == "a":  # narrower, so that 80 columns do
+                lines = [
+                    "0.10   -> 0.2    normal message [3] 5A 2D 00\n",
+                    "foreign 11-bit 123              [4] remote request\n",
+                    "foreign 29-bit 1C00400A         [1] 11  (reserved class)\n",
+                ]
+            self.assertEqual(self.shown("-t", mode), "".join(f"{stamp} {line}" for line in lines))
 
     def test_log_names_the_bus_without_its_kind(self):
         self.assertEqual(

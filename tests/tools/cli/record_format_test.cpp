@@ -3,9 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <chrono>
+#include <roio/json.hpp>
 #include <string>
-
-#include "json_lines.hpp"
 
 namespace roio::cli {
 namespace {
@@ -71,7 +70,7 @@ TEST(RecordFormat, JsonIsOneObjectALine) {
 TEST(RecordFormat, JsonOfAMessageIsReadBackAsTheSameMessage) {
   Buffer out;
   json_format()->frame(out, received(0x0400400A, FrameKind::extended));
-  const auto json = parse_json_line({out.data(), out.size() - 1});
+  const auto json = parse_json({out.data(), out.size() - 1});
   ASSERT_TRUE(json.ok()) << json.error().message;
   EXPECT_EQ(json->message.header,
             (Header{Priority::urgent, MessageClass::system, {0, 2}, {0, 10}}));

@@ -54,7 +54,7 @@ class SyncTest(CliTest):
             name = {"buses": "buses_command"}.get(command, command.replace(" ", "_"))
             part = re.search(rf"(?s)_roio_cli_{name}\(\).*?\n}}", text)[0]
             self.assertEqual(
-                set(re.findall(r"(--[\w-]+|(?<![\w-])-\w)\[", part)) |
+                set(re.findall(r"(--[\w-]+|(?<![\w-])-\w)(?:=-)?\[", part)) |
                 set(re.findall(r"{-\w,(--[\w-]+)}", part)) - {"--help"}, self.options(command),
                 command)
 
@@ -90,9 +90,11 @@ class CompletionTest(CliTest):
 
     # command line, what is offered: bash replaces what follows the last ':' or '='
     LINES = [
-        ("roio-cli ", ["--help", "--version", "bridge", "buses", "dump", "send"]),
+        ("roio-cli ", ["--help", "--version", "bridge", "buses", "dump", "help", "send"]),
         ("roio-cli d", ["dump"]),
         ("roio-cli send --cl", ["--class"]),
+        ("roio-cli send --wait lo", ["local:robot"]),
+        ("roio-cli help b", ["bridge", "buses"]),
         ("roio-cli send --class s", ["stream", "system"]),
         ("roio-cli dump -t ", ["a", "d", "z"]),
         ("roio-cli dump -n 5 lo", ["local:robot"]),

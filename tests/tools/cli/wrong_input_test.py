@@ -1,24 +1,28 @@
 #!/usr/bin/env python3
 """Wrong command lines: each is one line on standard error that says what was expected, and exit 2."""
 
+import os
+import shlex
+
 from driver import CliTest, main
 
 SEND_HELP = "; `roio-cli send --help` shows how"
 DUMP_HELP = "; `roio-cli dump --help` shows how"
 SHOW_HELP = "; `roio-cli bridge show --help` shows how"
 SET_HELP = "; `roio-cli bridge set --help` shows how"
+EMPTY = "; without DATA the message is empty"
 WORDS = ("expected to=SUBNET.NODE, from=SUBNET.NODE, urgent, normal, class=message|system|stream, "
          "ID:MASK, ID~MASK or the word or")
 
 # command line, the line on standard error
 WRONG = [
-    ("", "expected a command: send, dump, buses or bridge; `roio-cli --help` shows how"),
+    ("", "expected a command: send, dump, buses, bridge or help; `roio-cli --help` shows how"),
     ("snd local:x",
-     'unknown command "snd": expected send, dump, buses or bridge; `roio-cli --help` shows how'),
+     'unknown command "snd": expected send, dump, buses, bridge or help; `roio-cli --help` shows how'),
     ("--foo", 'unknown option "--foo"; `roio-cli --help` shows how'),
     # send: what is missing
     ("send", "expected BUS, DEST and DATA" + SEND_HELP),
-    ("send local:x", "expected DEST after BUS: SUBNET.NODE, SUBNET.* or -" + SEND_HELP),
+    ("send local:x", "expected DEST after BUS: SUBNET.NODE, SUBNET.*, ID#DATA or -" + SEND_HELP),
     ("send local:x 0.2 --count", "--count: expected a value after it"),
     # send: the bus
     ("send local: 0.2",
@@ -42,9 +46,33 @@ WRONG = [
     ("send local:x 0.2 5G", 'data "5G": "G" is no hex digit'),
     ("send local:x 0.2 010203040506070809",
      'data "010203040506070809": 9 bytes; a frame carries at most 8'),
-    ("send local:x 0.2 01 02",
-     "DATA: expected one word of hexadecimal digits such as 5A2D00 (or --dec before decimal "
-     "numbers), found 2 words"),
+    ("send local:x 0.2 5 A", 'data "5 A": odd number of hex digits; expected two per byte'),
+    ("send local:x 0.2 01 02 03 04 05 06 07 08 09",
+     'data "01 02 03 04 05 06 07 08 09": 9 bytes; a frame carries at most 8'),
+    ("send local:x 0.2 -- -5", 'data "-5": "-" is no hex digit'),
+    ("send local:x 0.2 ''",
+     'DATA: expected hexadecimal digits such as 5A2D00, found ""' + EMPTY),
+    ("send local:x 0.2 5A ''",
+     'DATA: expected hexadecimal digits such as 5A2D00, found ""' + EMPTY),
+    ("send local:x 0.2 --dec", "--dec: expected 1 to 8 numbers 0..255 after DEST" + EMPTY),
+    ("send local:x 0.2 --dec ''", 'DATA with --dec: expected a whole number 0..255, found ""'),
+    # send: frames as cansend takes them
+    ("send local:x 123##1DEAD",
+     'frame "123##1DEAD": a CAN FD frame ("##"); only classic CAN frames are taken'),
+    ("send local:x 123#DEA", 'frame "123#DEA": odd number of hex digits; expected two per byte'),
+    ("send local:x 800#", 'frame "800#": identifier 800 is out of range; expected 000..7FF'),
+    ("send local:x 20000004#00",
+     'frame "20000004#00": a controller\'s error report; expected a frame to send'),
+    ("send local:x 123#DE AD", "DATA: expected none after ID#DATA, as the frame has its own"),
+    ("send --from 0.3 local:x 123#DE",
+     "--from: expected without ID#DATA, as the frame says its own"),
+    ("send --urgent local:x 123#DE",
+     "--urgent: expected without ID#DATA, as the frame says its own"),
+    # send: --wait
+    ("send --wait can0 0.2",
+     "--wait: expected with local:NAME alone; on can0 nobody can tell who listens"),
+    ("send --wait=0 local:x 0.2", '--wait: expected a whole number 1..86400000, found "0"'),
+    ("send --wait=soon local:x 0.2", '--wait: expected a whole number 1..86400000, found "soon"'),
     ("send local:x 0.2 --dec 256",
      'DATA with --dec: expected a whole number 0..255, found "256"'),
     ("send local:x 0.2 --dec 5A",
@@ -60,6 +88,12 @@ WRONG = [
      '--count: expected a whole number 0..4294967295, found "ten"'),
     ("send --count 4294967296 local:x 0.2",
      '--count: expected a whole number 0..4294967295, found "4294967296"'),
+    ("send --count 1 --count 2 local:x 0.2", "--count: given twice; expected once"),
+    ("send --count local:x 0.2",
+     '--count: expected a whole number 0..4294967295, found "local:x"'),
+    ("send --from local:x 0.2",
+     '--from: address "local:x": no dot; expected SUBNET.NODE, such as 0.2'),
+    ("send --dec=5 local:x 0.2", "--dec: expected no value after it"),
     ("send --interval 10 local:x 0.2",
      "--interval: expected with --count N (0: until interrupted)"),
     ("send --timeout 0 local:x 0.2",
@@ -79,6 +113,13 @@ WRONG = [
     ("dump", "expected BUS" + DUMP_HELP),
     ("dump --colour local:x", 'unknown option "--colour"' + DUMP_HELP),
     ("dump -n", "-n: expected a value after it"),
+    ("dump -n 1 -n 2 local:x", "-n: given twice; expected once"),
+    ("dump -t local:x", '-t: expected a (absolute), d (delta) or z (zero), found "local:x"'),
+    ("dump -n local:x", '-n: expected a whole number 1..4294967295, found "local:x"'),
+    ("dump --json=yes local:x", "--json: expected no value after it"),
+    ("dump /dev/ttyACM0",
+     'bus "/dev/ttyACM0": a path is no interface; expected serial:/dev/ttyACM0 for the bridge on that '
+     "serial port"),
     ("dump -n 0 local:x", '-n: expected a whole number 1..4294967295, found "0"'),
     ("dump -T soon local:x", '-T: expected a whole number 1..86400000, found "soon"'),
     ("dump -t b local:x", '-t: expected a (absolute), d (delta) or z (zero), found "b"'),
@@ -97,10 +138,23 @@ WRONG = [
     ("dump local:x 123:XYZ",
      'bad filter "123:XYZ": expected an identifier and a mask of 1 to 8 hexadecimal digits each, '
      "such as 123:7FF or 1004A00A~1FFFFFFF"),
+    ("dump local:x 1234:7FF",
+     'bad filter "1234:7FF": identifier 1234 is out of range; expected 0..7FF, or 8 digits '
+     "(extended)"),
+    ("dump local:x from=0.*",
+     'bad filter "from=0.*": "0.*" is the broadcast address, which nobody sends from; expected 0.any '
+     "for any node of the subnet"),
     ("dump local:x or", 'bad filter "or": expected a filter on either side of it'),
     ("dump local:x urgent 1:C00007FF",
      'no frame can satisfy these filters together; put "or" between choices'),
+    # help
+    ("help snd",
+     'unknown command "snd": expected send, dump, buses, bridge or help; `roio-cli --help` shows how'),
+    ("help bridge shw",
+     'unknown command "shw": expected show, set, identify or attach; `roio-cli bridge --help` shows '
+     "how"),
     # buses
+    ("buses -- can0", 'expected no more words, found "can0"; `roio-cli buses --help` shows how'),
     ("buses can0", 'expected no more words, found "can0"; `roio-cli buses --help` shows how'),
     ("buses -v", 'unknown option "-v"; `roio-cli buses --help` shows how'),
     # bridge
@@ -129,6 +183,10 @@ WRONG = [
      "are plugged in, and serial:auto finds a bridge among them"),
     # bridge set
     ("bridge set auto", "expected --bitrate, --mode or --address" + SET_HELP),
+    ("bridge show auto -- x", 'expected no more words, found "x"' + SHOW_HELP),
+    ("bridge set --mode listen --mode normal auto", "--mode: given twice; expected once"),
+    ("bridge set --bitrate auto",
+     '--bitrate: expected a whole number 1000..1000000, found "auto"'),
     ("bridge set auto --bitrate", "--bitrate: expected a value after it"),
     ("bridge set auto --bitrate 999",
      '--bitrate: expected a whole number 1000..1000000, found "999"'),
@@ -161,14 +219,14 @@ class WrongInputTest(CliTest):
         for command_line, expected in WRONG:
             with self.subTest(command_line):
                 self.assertEqual(
-                    self.run_cli(*command_line.split()), (2, "", "roio-cli: " + expected + "\n")
+                    self.run_cli(*shlex.split(command_line)), (2, "", "roio-cli: " + expected + "\n")
                 )
 
     def test_an_interface_that_is_not_there(self):
         status, out, err = self.run_cli("dump", "nosuch0")
         self.assertEqual((status, out), (2, ""))
         # Which of the two, the kernel of this machine decides.
-        self.assertRegex(err, r"^roio-cli: nosuch0: (no such network interface|this kernel has no "
+        self.assertRegex(err, r"^roio-cli: nosuch0 \(did you mean local:nosuch0\?\): (no such network interface|this kernel has no "
                               r"CAN); .*local:NAME.*\n$")
 
     def test_a_bus_at_another_bit_rate(self):
@@ -177,9 +235,43 @@ class WrongInputTest(CliTest):
         self.assertEqual((status, out), (2, ""))
         self.assertEqual(
             err,
-            "roio-cli: local:paced?bitrate=250000 (it runs at 500000 bit/s): the bus already runs "
-            "at another bit rate\n",
+            "roio-cli: local:paced?bitrate=250000 (it runs at 500000 bit/s): not the pace of "
+            "this bus; its name alone, without bitrate, joins it as it is\n",
         )
+
+
+    def test_a_relative_folder_for_buses(self):
+        for command in (["send", "local:x", "0.2"], ["dump", "local:x"]):
+            self.assertEqual(
+                self.run_cli(*command, env=dict(os.environ, ROIO_RUNTIME_DIR="buses")),
+                (2, "", 'roio-cli: ROIO_RUNTIME_DIR "buses": expected a path that begins with /\n'))
+
+
+class BusesTest(CliTest):
+    """What cannot be looked at is told, and the others are listed all the same."""
+
+    def test_a_folder_that_cannot_be_read(self):
+        with open(self.path("file"), "w"):
+            pass
+        missing = self.path("ttyACM0")
+        for folder, error in ((self.path("file"), f"{self.path('file')}: Not a directory"),
+                              ("buses", 'ROIO_RUNTIME_DIR "buses": expected a path that begins with '
+                                        "/")):
+            with self.subTest(folder):
+                env = dict(os.environ, ROIO_RUNTIME_DIR=folder, ROIO_SERIAL_PORTS=missing)
+                status, out, err = self.run_cli("buses", env=env)
+                self.assertEqual(status, 1)
+                self.assertIn(f"serial:{missing}  no bridge: no such serial port\n", out)
+                self.assertEqual(err, f"roio-cli: local buses: {error}\n")
+
+    def test_ports_that_are_named_wrongly(self):
+        self.dump("local:robot")
+        env = dict(os.environ, ROIO_SERIAL_PORTS="ttyACM0")
+        status, out, err = self.run_cli("buses", env=env)
+        self.assertEqual((status, err), (
+            1, 'roio-cli: serial ports: ROIO_SERIAL_PORTS "ttyACM0": expected a path that begins with '
+               "/\n"))
+        self.assertIn("local:robot  local bus\n", out)
 
 
 class InformationTest(CliTest):
@@ -196,7 +288,12 @@ class InformationTest(CliTest):
                 self.assertEqual((status, err), (0, ""))
                 self.assertIn("Usage: roio-cli " + " ".join(command), out)
                 self.assertIn("Examples:\n  roio-cli ", out)
-                self.assertLess(max(map(len, out.splitlines())), 100)
+                self.assertLessEqual(max(map(len, out.splitlines())), 80)
+
+
+    def test_help_is_a_command_too(self):
+        for command in ([], ["send"], ["dump"], ["buses"], ["bridge"], ["bridge", "set"]):
+            self.assertEqual(self.run_cli("help", *command), self.run_cli(*command, "--help"))
 
 
 if __name__ == "__main__":

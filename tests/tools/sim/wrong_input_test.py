@@ -105,8 +105,8 @@ class WrongInputTest(SimTest):
         status, out, err = self.run_sim("--bus", "local:paced?bitrate=500000", "uno=" + UNO)
         self.assertEqual((status, out), (2, ""))
         self.assertEqual(
-            err, "roio-sim: local:paced?bitrate=500000 (it runs at 250000 bit/s): the bus already runs "
-                 "at another bit rate\n")
+            err, "roio-sim: local:paced?bitrate=500000 (it runs at 250000 bit/s): not the pace of this "
+                 "bus; its name alone, without bitrate, joins it as it is\n")
 
     def test_a_file_that_is_no_firmware(self):
         with open(self.path("text.elf"), "w") as file:

@@ -39,7 +39,7 @@ _roio_cli_arguments_before() {
 _roio_cli_words() {
   local command=${COMP_WORDS[1]} previous=${COMP_WORDS[COMP_CWORD - 1]}
   if [ "$COMP_CWORD" -eq 1 ]; then
-    echo send dump buses bridge --help --version
+    echo send dump buses bridge help --help --version
     return
   fi
   case $previous in
@@ -50,11 +50,12 @@ _roio_cli_words() {
     --from | --count | --interval | --timeout | -n | -T | --bitrate | --seconds) return ;;
   esac
   case $command:$current in
-    send:-*) echo --from --urgent --class --count --interval --timeout --dec --help; return ;;
+    send:-*) echo --from --urgent --class --count --interval --timeout --wait --dec --help; return ;;
     dump:-*) echo -n -T -t --log --json --no-foreign --errors --verbose --help; return ;;
     buses:-*) echo --json --help; return ;;
     send:* | dump:*) ;;
     bridge:*) _roio_cli_bridge_words; return ;;
+    help:*) [ "$COMP_CWORD" -eq 2 ] && echo send dump buses bridge; return ;;
     *) return ;;
   esac
   if [ "$(_roio_cli_arguments_before 2)" -eq 0 ]; then

@@ -65,6 +65,7 @@ complete -c roio-cli -n __fish_use_subcommand -a send -d 'Send a message, or lin
 complete -c roio-cli -n __fish_use_subcommand -a dump -d 'Show what is on a bus'
 complete -c roio-cli -n __fish_use_subcommand -a buses -d 'List the buses that can be opened'
 complete -c roio-cli -n __fish_use_subcommand -a bridge -d 'Show, set and use a bridge on a serial port'
+complete -c roio-cli -n __fish_use_subcommand -a help -d 'Print the help of a command'
 complete -c roio-cli -n __fish_use_subcommand -l version -d 'Print the version and end'
 complete -c roio-cli -s h -l help -d 'Print help and end'
 complete -c roio-cli -n '__fish_seen_subcommand_from send dump; and __roio_cli_needs_bus' -a '(__roio_cli_buses) serial:(__roio_cli_ports)'
@@ -75,6 +76,7 @@ complete -c roio-cli -n '__fish_seen_subcommand_from send' -l class -x -a 'messa
 complete -c roio-cli -n '__fish_seen_subcommand_from send' -l count -x -d 'Send so often; 0 until interrupted'
 complete -c roio-cli -n '__fish_seen_subcommand_from send' -l interval -x -d 'Time between messages, ms'
 complete -c roio-cli -n '__fish_seen_subcommand_from send' -l timeout -x -d 'Longest wait for the bus, ms'
+complete -c roio-cli -n '__fish_seen_subcommand_from send' -l wait -d 'Until somebody listens on a local bus'
 complete -c roio-cli -n '__fish_seen_subcommand_from send' -l dec -d 'DATA are decimal numbers'
 
 complete -c roio-cli -n '__fish_seen_subcommand_from dump' -s n -x -d 'End after so many frames'
@@ -86,6 +88,8 @@ complete -c roio-cli -n '__fish_seen_subcommand_from dump' -l no-foreign -d 'Hid
 complete -c roio-cli -n '__fish_seen_subcommand_from dump' -l errors -d 'Show error reports'
 complete -c roio-cli -n '__fish_seen_subcommand_from dump' -s v -l verbose -d 'Say when listening, and counts'
 complete -c roio-cli -n '__fish_seen_subcommand_from dump; and not __roio_cli_needs_bus' -a 'to= from= urgent normal class=message class=system class=stream or'
+
+complete -c roio-cli -n 'set -l words (commandline -opc); test (count $words) = 2; and test $words[2] = help' -a 'send dump buses bridge'
 
 complete -c roio-cli -n '__fish_seen_subcommand_from buses' -l json -d 'JSON lines'
 

@@ -61,13 +61,14 @@ class InterfaceClaim {
 
 std::unique_ptr<Bus> open_bus(const std::string& text, const BusUrl& url) {
   try {
-    return open(text);
+    return open_until_signal(text);
   } catch (const std::system_error& error) {
     if (error.code() != Errc::no_such_interface) {
       throw;
     }
     throw UsageError(url.target + ": no such network interface; `ip link add " + url.target +
-                     " type vcan; ip link set " + url.target + " up` makes a virtual one");
+                     " type vcan; ip link set " + url.target +
+                     " up` makes a virtual one, and local:NAME needs none");
   }
 }
 
@@ -143,7 +144,7 @@ int bridge_attach(const BridgeAttachOptions& options) {
   const auto bus = open_bus(options.bus, url);
   const auto claim =
       url.kind == BusUrl::Kind::socketcan ? std::make_unique<InterfaceClaim>(url.target) : nullptr;
-  const auto bridge = open(options.port);
+  const auto bridge = open_until_signal(options.port);
   const std::string port = bridge_of(*bridge)->info().port;
   note(port + ": attached to " + bus->name());
   Attachment({*bridge, port}, {*bus, bus->name()}, options.verbose).run();

@@ -8,7 +8,7 @@ namespace {
 constexpr const char* bridge_examples = R"(Examples:
   roio-cli bridge show /dev/ttyACM0          what it is, and what it has counted
   roio-cli bridge set auto --bitrate 125000  the only bridge there is
-  roio-cli bridge attach /dev/ttyACM0 vcan0  for every Linux program that speaks CAN
+  roio-cli bridge attach /dev/ttyACM0 vcan0  for every Linux program with CAN
 
 PORT is a serial port, auto for the only bridge there is, or the whole name of
 the bus: serial:/dev/ttyACM0?bitrate=125000. One program at a time has it.
@@ -45,6 +45,8 @@ and BUS go down meanwhile; what one side does not take within a second is lost
 and counted. At the end (with -v once a second) it says what was forwarded, and
 what was lost where.)";
 
+constexpr const char* commands = "show, set, identify or attach";
+
 /// @return PORT as the name of a bus.
 std::string parse_port(const std::string& text) {
   constexpr const char* expected = "PORT: expected a serial port such as /dev/ttyACM0, or auto";
@@ -70,7 +72,7 @@ BridgeWords::BridgeWords(CLI::App& program)
       json_(flag(*show_, "--json", "One JSON object")),
       bitrate_(set_->add_option("--bitrate", bitrate_text_, "Of the CAN bus")->type_name("BPS")),
       mode_(set_->add_option("--mode", mode_text_,
-                             "normal, listen (drives nothing) or loopback (off the bus)")
+                             "normal, listen (drives nothing) or loopback (own frames)")
                 ->type_name("NAME")),
       address_(set_->add_option("--address", address_text_,
                                 "That it answers to as a node; none: it is no node")
@@ -108,7 +110,7 @@ BridgeSetOptions BridgeWords::parse_set() const {
   constexpr std::uint64_t slowest_bps = 1000;
   constexpr std::uint64_t fastest_bps = 1000000;
   BridgeSetOptions options;
-  options.port = port_of(*set_);
+  refuse_rest(*set_, "bridge set");
   if (bitrate_->count() > 0) {
     options.bitrate_bps = static_cast<std::uint32_t>(
         parse_number("--bitrate", bitrate_text_, slowest_bps, fastest_bps));
@@ -120,6 +122,7 @@ BridgeSetOptions BridgeWords::parse_set() const {
   if (options.set_address && address_text_ != "none") {
     options.address = value_or_refuse(parse_source(address_text_), "--address: ");
   }
+  options.port = port_of(*set_);
   if (!options.bitrate_bps && !options.mode && !options.set_address) {
     refuse("bridge set", "expected --bitrate, --mode or --address");
   }
@@ -128,8 +131,9 @@ BridgeSetOptions BridgeWords::parse_set() const {
 
 BridgeIdentifyOptions BridgeWords::parse_identify() const {
   constexpr std::uint64_t longest_s = 255;
-  return {port_of(*identify_),
-          std::chrono::seconds(parse_number("--seconds", seconds_text_, 0, longest_s))};
+  refuse_rest(*identify_, "bridge identify");
+  const std::chrono::seconds duration(parse_number("--seconds", seconds_text_, 0, longest_s));
+  return {port_of(*identify_), duration};
 }
 
 BridgeAttachOptions BridgeWords::parse_attach() const {
@@ -147,7 +151,15 @@ BridgeAttachOptions BridgeWords::parse_attach() const {
   return options;
 }
 
+void BridgeWords::refuse_unknown() const {
+  refuse_rest(*app_, "bridge", commands);
+}
+
 Command BridgeWords::parse() const {
+  // Behind "--" words come back that a command of its own has no place for.
+  for (const CLI::App* command : app_->get_subcommands()) {
+    refuse_rest(*app_, "bridge " + command->get_name());
+  }
   if (show_->parsed()) {
     return parse_show();
   }
@@ -160,8 +172,7 @@ Command BridgeWords::parse() const {
   if (attach_->parsed()) {
     return parse_attach();
   }
-  constexpr const char* commands = "show, set, identify or attach";
-  refuse_rest(*app_, "bridge", commands);
+  refuse_unknown();
   refuse("bridge", std::string("expected a command: ") + commands);
 }
 

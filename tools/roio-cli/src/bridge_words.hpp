@@ -18,7 +18,8 @@ class BridgeWords {
   ~BridgeWords() = default;
 
   [[nodiscard]] bool parsed() const { return app_->parsed(); }
-  /// @throws UsageError
+  /// @throws UsageError, as does the next: `bridge` was followed by a word that is no command.
+  void refuse_unknown() const;
   [[nodiscard]] Command parse() const;
 
  private:

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <roio/bridge.hpp>
 #include <roio/bus_list.hpp>
+#include <string>
+#include <system_error>
 #include <vector>
 
 #include "bridge_report.hpp"
@@ -36,18 +38,34 @@ BusReport report_of(const BridgePort& port) {
   return report;
 }
 
-std::vector<BusReport> look_for_buses() {
+BusReport report_of(const std::string& local_bus) {
+  return {.bus = local_bus, .kind = "local"};
+}
+
+struct Search {
   std::vector<BusReport> found;
-  for (const CanInterface& interface : can_interfaces()) {
-    found.push_back(report_of(interface));
+  bool failed = false;
+
+  /// Where one kind of bus cannot be looked for, the others still can.
+  template <typename List>
+  void add(const char* what, const List& list) {
+    try {
+      for (const auto& bus : list()) {
+        found.push_back(report_of(bus));
+      }
+    } catch (const std::system_error& error) {
+      note(std::string(what) + ": " + error.what());
+      failed = true;
+    }
   }
-  for (const std::string& bus : local_buses()) {
-    found.push_back({.bus = bus, .kind = "local"});
-  }
-  for (const BridgePort& port : find_bridges()) {
-    found.push_back(report_of(port));
-  }
-  return found;
+};
+
+Search look_for_buses() {
+  Search search;
+  search.add("CAN interfaces", can_interfaces);
+  search.add("local buses", local_buses);
+  search.add("serial ports", [] { return find_bridges(); });
+  return search;
 }
 
 void say_what_to_do() {
@@ -63,10 +81,13 @@ void say_what_to_do() {
 }  // namespace
 
 int buses(const BusesOptions& options) {
-  const std::vector<BusReport> found = look_for_buses();
+  const auto& [found, failed] = look_for_buses();
+  const int status = failed ? exit_failure : exit_success;
   if (found.empty()) {
-    say_what_to_do();
-    return exit_success;
+    if (!failed) {
+      say_what_to_do();
+    }
+    return status;
   }
   std::size_t width = 0;
   for (const BusReport& report : found) {
@@ -81,7 +102,7 @@ int buses(const BusesOptions& options) {
     }
   }
   flush(out);
-  return exit_success;
+  return status;
 }
 
 }  // namespace roio::cli

@@ -189,7 +189,7 @@ int dump(const DumpOptions& options) {
   OpenOptions open_options;
   open_options.send_only = true;  // nothing comes in before the filters are set
   open_options.error_frames = options.errors;
-  const auto bus = open(options.bus, open_options);
+  const auto bus = open_until_signal(options.bus, open_options);
   bus->set_filters(*filters);
   const CancelOnSignal cancel_on_signal(*bus);
   if (options.verbose) {

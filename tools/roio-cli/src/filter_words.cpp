@@ -110,17 +110,22 @@ Cube address_cube(Address address, bool any_node) {
   return cube;
 }
 
-// "0.any" and, of a source, "0.*" too: no node has the broadcast address for its own.
+// "0.*" is the broadcast address, which no node has for its own; "0.any" is every node.
 Parsed<Cube> parse_address_cube(std::string_view text, bool is_source) {
   constexpr std::string_view any = ".any";
-  bool any_node = text.ends_with(any);
+  const bool any_node = text.ends_with(any);
   const Parsed<Address> address = parse_address(
       any_node ? std::string(text.substr(0, text.size() - any.size())) + ".*" : std::string(text));
   if (!address) {
     return address.error();
   }
+  if (is_source && is_broadcast(*address) && !any_node) {
+    return ParseError{quote(text) +
+                          " is the broadcast address, which nobody sends from; expected " +
+                          std::to_string(address->subnet) + ".any for any node of the subnet",
+                      0};
+  }
   if (is_source) {
-    any_node = any_node || is_broadcast(*address);
     return address_cube<SourceSubnetField, SourceNodeField>(*address, any_node);
   }
   return address_cube<DestinationSubnetField, DestinationNodeField>(*address, any_node);
@@ -133,25 +138,40 @@ std::optional<std::uint32_t> parse_hex_word(std::string_view text) {
   return whole && text.size() <= 8 ? std::optional(value) : std::nullopt;
 }
 
-// As candump reads them: 8 digits make the identifier an extended one, and error reports are not
-// filtered by mask.
-std::optional<Cube> parse_identifier_cube(std::string_view id_text, std::string_view mask_text) {
+// As candump reads them: 8 digits make the identifier an extended one. What no frame has, candump
+// takes too, and then shows nothing.
+Parsed<Cube> parse_identifier_cube(std::string_view id_text, std::string_view mask_text) {
   const auto id = parse_hex_word(id_text);
   const auto mask = parse_hex_word(mask_text);
   if (!id || !mask) {
-    return std::nullopt;
+    return ParseError{
+        "expected an identifier and a mask of 1 to 8 hexadecimal digits each, such as 123:7FF or "
+        "1004A00A~1FFFFFFF",
+        0};
   }
-  const std::uint32_t tagged = *id | (id_text.size() == 8 ? socketcan::extended_flag : 0U);
-  const std::uint32_t cared_for = *mask & ~socketcan::error_flag;
-  return Cube{tagged & cared_for, cared_for};
+  constexpr std::uint32_t kind_bits = socketcan::extended_flag | socketcan::remote_flag;
+  const bool extended = id_text.size() == 8;
+  const std::uint32_t largest = max_id(extended ? FrameKind::extended : FrameKind::standard);
+  if (*id > largest) {
+    return ParseError{"identifier " + std::string(id_text) + " is out of range; expected " +
+                          (extended ? "00000000..1FFFFFFF" : "0..7FF, or 8 digits (extended)"),
+                      0};
+  }
+  if ((*mask & ~kind_bits) > largest) {
+    return ParseError{
+        "mask " + std::string(mask_text) + " is out of range; expected " +
+            (extended ? "0..1FFFFFFF" : "0..7FF beside an identifier below 8 digits") +
+            ", plus 80000000 and 40000000 for the kind of frame",
+        0};
+  }
+  const std::uint32_t tagged = *id | (extended ? socketcan::extended_flag : 0U);
+  return Cube{tagged & *mask, *mask};
 }
 
 std::optional<ParseError> add_identifier(Group& group, std::string_view word, std::size_t sign) {
   const auto cube = parse_identifier_cube(word.substr(0, sign), word.substr(sign + 1));
   if (!cube) {
-    return bad_word(word,
-                    "expected an identifier and a mask of 1 to 8 hexadecimal digits each, such as "
-                    "123:7FF or 1004A00A~1FFFFFFF");
+    return bad_word(word, cube.error().message);
   }
   (word[sign] == '~' ? group.unwanted : group.wanted[identifier]).push_back(*cube);
   return std::nullopt;

@@ -1,11 +1,13 @@
 /// The FILTER words of `roio-cli dump`, compiled to SocketCAN filters. A pure function.
 ///
-///   to=0.2      messages to node 0.2          to=0.*    broadcasts to subnet 0
+///   to=0.2      messages to node 0.2          to=0.*      broadcasts to subnet 0
 ///   to=0.any    to any node of subnet 0, or to all of it
-///   from=0.3    from node 0.3                 from=0.*  from any node of subnet 0
+///   from=0.3    from node 0.3                 from=0.any  from any node of subnet 0
 ///   urgent  normal  class=system              by priority, by class
 ///   123:7FF     candump's: identifier and mask in hexadecimal, an 8-digit identifier is extended
 ///   123~7FF     candump's: all but these
+///
+/// A star is the broadcast address, as everywhere; "any" is every node.
 ///
 /// Words of one kind widen (to=0.2 to=0.*: either), words of different kinds narrow (to=0.2 urgent:
 /// both), each ID~MASK takes away, and the word "or" begins a second, independent choice.

@@ -43,14 +43,19 @@ void append_error_classes(Buffer& out, std::uint32_t id) {
   }
 }
 
-void append_data(Buffer& out, const Frame& frame) {
+std::string_view spaces(Gap gap) {
+  return gap == Gap::wide ? "  " : " ";
+}
+
+void append_data(Buffer& out, const Frame& frame, Gap gap) {
   fmt::format_to(std::back_inserter(out), "[{}]", frame.length);
   if (is_remote(frame.kind)) {
-    append(out, "  remote request");
+    append(out, spaces(gap));
+    append(out, "remote request");
     return;
   }
   constexpr std::string_view digits = "0123456789ABCDEF";
-  std::string_view separator = "  ";
+  std::string_view separator = spaces(gap);
   for (std::uint8_t i = 0; i < frame.length && i < max_data_length; ++i) {
     append(out, separator);
     out.push_back(digits[frame.data[i] >> 4U]);
@@ -59,27 +64,38 @@ void append_data(Buffer& out, const Frame& frame) {
   }
 }
 
-void append_message(Buffer& out, const Message& message, const Frame& frame, bool colour) {
+void append_message(Buffer& out, const Message& message, const Frame& frame, bool colour, Gap gap) {
   const bool urgent = message.header.priority == Priority::urgent;
   if (colour && urgent) {
     append(out, bold_yellow);
   }
-  fmt::format_to(std::back_inserter(out), "{:<6} -> {:<6}  {:<6}  {:<7}  ",
+  fmt::format_to(std::back_inserter(out), "{:<6} -> {:<6}{}{:<6}{}{:<7}{}",
                  to_string(message.header.source), to_string(message.header.destination),
-                 to_string(message.header.priority), to_string(message.header.message_class));
-  append_data(out, frame);
+                 spaces(gap), to_string(message.header.priority), spaces(gap),
+                 to_string(message.header.message_class), spaces(gap));
+  append_data(out, frame, gap);
   if (colour && urgent) {
     append(out, plain);
   }
 }
 
-void append_foreign(Buffer& out, const Frame& frame, Status why) {
-  if (is_extended(frame.kind)) {
-    fmt::format_to(std::back_inserter(out), "foreign  29-bit {:08X}           ", frame.id);
-  } else {
-    fmt::format_to(std::back_inserter(out), "foreign  11-bit {:03X}                ", frame.id);
-  }
-  append_data(out, frame);
+// How wide all is that stands before a message's length.
+int width_before_length(Gap gap) {
+  return gap == Gap::wide ? 35 : 32;
+}
+
+// A frame that is no message: what it is, and its identifier, where a message has its addresses.
+void append_other(Buffer& out, std::string_view what, const std::string& id, Gap gap) {
+  const std::string text = std::string(what) + std::string(spaces(gap)) + id;
+  fmt::format_to(std::back_inserter(out), "{:<{}}", text, width_before_length(gap));
+}
+
+void append_foreign(Buffer& out, const Frame& frame, Status why, Gap gap) {
+  append_other(out, "foreign",
+               is_extended(frame.kind) ? fmt::format("29-bit {:08X}", frame.id)
+                                       : fmt::format("11-bit {:03X}", frame.id),
+               gap);
+  append_data(out, frame, gap);
   if (why == Status::unknown_class) {
     append(out, "  (reserved class)");
   } else if (why == Status::bad_argument) {
@@ -87,19 +103,19 @@ void append_foreign(Buffer& out, const Frame& frame, Status why) {
   }
 }
 
-void append_error(Buffer& out, const Frame& frame) {
-  fmt::format_to(std::back_inserter(out), "error    {:08X}                  ", frame.id);
-  append_data(out, frame);
+void append_error(Buffer& out, const Frame& frame, Gap gap) {
+  append_other(out, "error  ", fmt::format("{:08X}", frame.id), gap);
+  append_data(out, frame, gap);
   append_error_classes(out, frame.id);
 }
 
 }  // namespace
 
-void append_frame(Buffer& out, const Frame& frame, bool colour) {
+void append_frame(Buffer& out, const Frame& frame, bool colour, Gap gap) {
   Message message{};
   const Status status = to_message(frame, message);
   if (status == Status::ok) {
-    append_message(out, message, frame, colour);
+    append_message(out, message, frame, colour, gap);
     return;
   }
   const bool error = frame.kind == FrameKind::error;
@@ -107,9 +123,9 @@ void append_frame(Buffer& out, const Frame& frame, bool colour) {
     append(out, error ? red : dim);
   }
   if (error) {
-    append_error(out, frame);
+    append_error(out, frame, gap);
   } else {
-    append_foreign(out, frame, status);
+    append_foreign(out, frame, status, gap);
   }
   if (colour) {
     append(out, plain);

@@ -10,6 +10,7 @@
 
 #include <fmt/format.h>
 
+#include <cstdint>
 #include <optional>
 #include <roio/bus.hpp>
 
@@ -17,9 +18,15 @@ namespace roio::cli {
 
 using Buffer = fmt::memory_buffer;
 
+/// How far apart the columns stand.
+enum class Gap : std::uint8_t {
+  wide,    ///< Two spaces.
+  narrow,  ///< One: beside an absolute time, the longest message still has 80 columns.
+};
+
 /// Appends the line without its end. Never allocates for a buffer that has room.
 /// @param colour adds terminal colours: urgent messages stand out, foreign frames stand back.
-void append_frame(Buffer& out, const Frame& frame, bool colour);
+void append_frame(Buffer& out, const Frame& frame, bool colour, Gap gap = Gap::wide);
 
 /// Whether a frame is a Roio message; the others are foreign, or error reports.
 bool is_roio(const Frame& frame) noexcept;
@@ -30,6 +37,9 @@ class TimeColumn {
   enum class Mode : char { none = 0, absolute = 'a', delta = 'd', zero = 'z' };
 
   explicit TimeColumn(Mode mode) : mode_(mode) {}
+
+  /// Of the columns that follow.
+  [[nodiscard]] Gap gap() const { return mode_ == Mode::absolute ? Gap::narrow : Gap::wide; }
 
   /// Appends the column for the next frame; the first one of d and z is at 0, and a clock that
   /// went backwards shows as no time passed.

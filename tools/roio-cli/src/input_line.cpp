@@ -5,7 +5,6 @@
 #include <array>
 #include <cerrno>
 #include <roio/candump_log.hpp>
-#include <roio/message.hpp>
 #include <system_error>
 
 #include "exit_status.hpp"
@@ -16,31 +15,25 @@ namespace {
 
 constexpr std::string_view white_space = " \t\r\n";
 
-Parsed<Frame> from_json(std::string_view line, Address default_source) {
-  const auto json = parse_json_line(line);
-  if (!json) {
-    return json.error();
-  }
-  Message message = json->message;
-  if (!json->has_source) {
-    message.header.source = default_source;
-  }
-  Frame frame{};
-  if (to_frame(message, frame) != Status::ok) {
-    return ParseError{"expected a message of class message, system or stream", 0};
-  }
-  return frame;
+// An error report is none to be sent.
+std::optional<Frame> sendable(const Frame& frame) {
+  return frame.kind == FrameKind::error ? std::nullopt : std::optional(frame);
 }
 
-Parsed<Frame> from_log(std::string_view line) {
+Parsed<std::optional<Frame>> from_log(std::string_view line) {
   const auto log = parse_log_line(line);
   if (!log) {
     return log.error();
   }
-  if (log->frame.kind == FrameKind::error) {
-    return ParseError{"expected a frame to send, found a controller's error report", 0};
+  return sendable(log->frame);
+}
+
+Parsed<std::optional<Frame>> from_frame(std::string_view text) {
+  const auto frame = parse_frame_text(text);
+  if (!frame) {
+    return frame.error();
   }
-  return log->frame;
+  return sendable(*frame);
 }
 
 }  // namespace
@@ -49,20 +42,24 @@ bool is_blank(std::string_view line) noexcept {
   return line.find_first_not_of(white_space) == std::string_view::npos;
 }
 
-Parsed<Frame> parse_input_line(std::string_view line, Address default_source) {
+Parsed<std::optional<Frame>> parse_input_line(std::string_view line, Address default_source) {
   if (line.size() > LineReader::max_line) {
     return ParseError{
         "expected a line of at most " + std::to_string(LineReader::max_line) + " bytes", 0};
   }
   const std::size_t first = line.find_first_not_of(white_space);
   if (first != std::string_view::npos && line[first] == '{') {
-    return from_json(line, default_source);
+    return parse_json_line(line, default_source);
   }
   if (first != std::string_view::npos && line[first] == '(') {
     return from_log(line.substr(first));
   }
+  const std::size_t hash = line.find('#');
+  if (first != std::string_view::npos && hash != std::string_view::npos && hash > first) {
+    return from_frame(line.substr(first, line.find_last_not_of(white_space) + 1 - first));
+  }
   return ParseError{
-      "expected a JSON message {\"type\":\"Roio\",...} or a line of a log "
+      "expected a JSON message {\"type\":\"Roio\",...}, a frame ID#DATA, or a line of a log "
       "\"(TIME) BUS ID#DATA\"",
       0};
 }

@@ -12,10 +12,13 @@
 
 namespace roio::cli {
 
-/// Reads one line that is not blank. "{" begins a JSON message (its source is `default_source` when
-/// it names none), "(" a line of a log, whose frame is taken as it is.
-/// @return the frame, one that can be sent; or an error that says what was expected.
-Parsed<Frame> parse_input_line(std::string_view line, Address default_source);
+/// Reads one line that is not blank. "{" begins JSON as `dump --json` writes it (a message's source
+/// is `default_source` when it names none), "(" a line of a log; else it is a frame as
+/// cansend takes it. A frame is sent as it is.
+/// @return the frame, one that can be sent; none: the line tells of the bus that it comes from (an
+///         error report, a loss, a state), and cannot be sent; or an error that says what was
+///         expected.
+Parsed<std::optional<Frame>> parse_input_line(std::string_view line, Address default_source);
 
 bool is_blank(std::string_view line) noexcept;
 

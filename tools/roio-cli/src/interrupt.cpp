@@ -11,6 +11,7 @@
 #include <limits>
 #include <system_error>
 
+#include "exit_status.hpp"
 #include "process.hpp"
 
 namespace roio::cli {
@@ -20,14 +21,19 @@ namespace {
 // NOLINTBEGIN(cppcoreguidelines-avoid-non-const-global-variables)
 std::atomic<int> caught{0};
 std::atomic<Bus*> watched{nullptr};
+std::atomic<bool> opening{false};
 std::array<int, 2> wake_pipe{-1, -1};
 // NOLINTEND(cppcoreguidelines-avoid-non-const-global-variables)
-static_assert(std::atomic<int>::is_always_lock_free && std::atomic<Bus*>::is_always_lock_free,
+static_assert(std::atomic<int>::is_always_lock_free && std::atomic<Bus*>::is_always_lock_free &&
+                  std::atomic<bool>::is_always_lock_free,
               "a signal handler may use them");
 
 extern "C" void on_signal(int number) {
   const int saved_errno = errno;
   caught = number;
+  if (opening) {
+    ::_exit(exit_signal + number);
+  }
   const char byte = 0;
   // A full pipe has woken the reader already.
   [[maybe_unused]] const ssize_t written = ::write(wake_pipe[1], &byte, 1);
@@ -90,6 +96,17 @@ bool Interrupt::wait_readable(int fd) {
     woken = wait_for(fd, -1);
   }
   return woken == Woken::readable;
+}
+
+std::unique_ptr<Bus> open_until_signal(const std::string& url, const OpenOptions& options) {
+  struct Opening {
+    Opening() { opening = true; }
+    ~Opening() { opening = false; }
+  } const now;
+  if (caught != 0) {
+    ::_exit(exit_signal + caught);  // it came just before
+  }
+  return open(url, options);
 }
 
 CancelOnSignal::CancelOnSignal(Bus& bus) noexcept {

@@ -4,7 +4,9 @@
 #define ROIO_CLI_INTERRUPT_HPP
 
 #include <chrono>
+#include <memory>
 #include <roio/bus.hpp>
+#include <string>
 
 namespace roio::cli {
 
@@ -27,6 +29,10 @@ class Interrupt {
   /// @return false when a signal ended the wait.
   [[nodiscard]] static bool wait_readable(int fd);
 };
+
+/// Opens a bus. A signal meanwhile ends the process at once, with 128 and its number: open() may
+/// wait for seconds, and nothing has been sent or shown yet.
+std::unique_ptr<Bus> open_until_signal(const std::string& url, const OpenOptions& options = {});
 
 /// While it lives, a signal also cancels the waits of a bus.
 class CancelOnSignal {

@@ -1,8 +1,12 @@
 #include "json_lines.hpp"
 
 #include <iterator>
+#include <nlohmann/json.hpp>
 #include <roio/json.hpp>
+#include <roio/message.hpp>
+#include <set>
 #include <string>
+#include <utility>
 
 #include "record_format.hpp"
 
@@ -63,10 +67,133 @@ class JsonFormat final : public RecordFormat {
   }
 };
 
+// --- and back ------------------------------------------------------------------------------------
+
+using Json = nlohmann::json;
+
+ParseError field_error(const std::string& name, const std::string& what) {
+  return {"JSON field " + quote(name) + ": " + what, 0};
+}
+
+/// An object without a field twice; nothing for any other text.
+std::optional<Json> read_object(std::string_view line) {
+  std::set<std::string> seen;
+  bool twice = false;
+  Json json = Json::parse(
+      line.begin(), line.end(),
+      [&](int depth, Json::parse_event_t event, Json& value) {
+        if (event == Json::parse_event_t::key && depth == 1) {
+          twice = !seen.insert(value.get<std::string>()).second || twice;
+        }
+        return true;
+      },
+      false);
+  return json.is_object() && !twice ? std::optional(std::move(json)) : std::nullopt;
+}
+
+std::optional<FrameKind> read_kind(const Json& value) {
+  for (const FrameKind kind : {FrameKind::standard, FrameKind::standard_remote, FrameKind::extended,
+                               FrameKind::extended_remote, FrameKind::error}) {
+    if (value == kind_name(kind)) {
+      return kind;
+    }
+  }
+  return std::nullopt;
+}
+
+std::optional<std::uint64_t> read_whole(const Json& value, std::uint64_t largest) {
+  if (!value.is_number_unsigned() || value.get<std::uint64_t>() > largest) {
+    return std::nullopt;
+  }
+  return value.get<std::uint64_t>();
+}
+
+/// The data of a frame of that kind and length: as many bytes, or none of a remote request.
+std::optional<ParseError> read_data(const Json& value, Frame& frame) {
+  const std::size_t due = is_remote(frame.kind) ? 0 : frame.length;
+  if (!value.is_array() || value.size() != due) {
+    return field_error(
+        "data", "expected an array of " + count_of(due, "byte") + ", as kind and length say");
+  }
+  for (std::size_t i = 0; i < due; ++i) {
+    const auto byte = read_whole(value[i], 255);
+    if (!byte) {
+      return field_error("data", "expected integers 0..255");
+    }
+    frame.data[i] = static_cast<std::uint8_t>(*byte);
+  }
+  return std::nullopt;
+}
+
+/// A frame that is no message, as JsonFormat::foreign() writes it.
+Parsed<std::optional<Frame>> read_foreign(const Json& object) {
+  for (const char* name : {"kind", "id", "length", "data"}) {
+    if (!object.contains(name)) {
+      return field_error(name, "missing; a frame of type CAN has kind, id, length and data");
+    }
+  }
+  for (const auto& [name, value] : object.items()) {
+    if (name != "type" && name != "kind" && name != "id" && name != "length" && name != "data" &&
+        name != "timestamp") {
+      return field_error(name, "unknown in a frame of type CAN");
+    }
+  }
+  const auto kind = read_kind(object["kind"]);
+  if (!kind) {
+    return field_error("kind",
+                       "expected standard, standard-remote, extended, extended-remote or error");
+  }
+  if (*kind == FrameKind::error) {
+    return std::optional<Frame>();
+  }
+  const auto id = read_whole(object["id"], max_id(*kind));
+  if (!id) {
+    return field_error("id", "expected an integer 0.." + std::to_string(max_id(*kind)));
+  }
+  const auto length = read_whole(object["length"], max_data_length);
+  if (!length) {
+    return field_error("length", "expected an integer 0..8");
+  }
+  Frame frame{static_cast<std::uint32_t>(*id), *kind, static_cast<std::uint8_t>(*length), {}};
+  if (const auto error = read_data(object["data"], frame)) {
+    return *error;
+  }
+  return std::optional(frame);
+}
+
+/// What is of another type than a message; nothing when it is neither.
+std::optional<Parsed<std::optional<Frame>>> parse_other(std::string_view line) {
+  const auto object = read_object(line);
+  if (!object || !object->contains("type")) {
+    return std::nullopt;
+  }
+  const Json& type = (*object)["type"];
+  if (type == "CAN") {
+    return read_foreign(*object);
+  }
+  if (type == "lost" || type == "state") {
+    return std::optional<Frame>();
+  }
+  return std::nullopt;
+}
+
 }  // namespace
 
-Parsed<JsonMessage> parse_json_line(std::string_view line) {
-  return parse_json(line);
+Parsed<std::optional<Frame>> parse_json_line(std::string_view line, Address default_source) {
+  const auto json = parse_json(line);
+  if (!json) {
+    const auto other = parse_other(line);
+    return other ? *other : Parsed<std::optional<Frame>>(json.error());
+  }
+  Message message = json->message;
+  if (!json->has_source) {
+    message.header.source = default_source;
+  }
+  Frame frame{};
+  if (to_frame(message, frame) != Status::ok) {
+    return ParseError{"expected a message of class message, system or stream", 0};
+  }
+  return std::optional(frame);
 }
 
 std::unique_ptr<RecordFormat> json_format() {

@@ -2,13 +2,19 @@
 #ifndef ROIO_CLI_JSON_LINES_HPP
 #define ROIO_CLI_JSON_LINES_HPP
 
-#include <roio/json.hpp>
+#include <optional>
+#include <roio/address.hpp>
+#include <roio/frame.hpp>
+#include <roio/text.hpp>
 #include <string_view>
 
 namespace roio::cli {
 
-/// parse_json(), or an error that says that this build knows no JSON.
-Parsed<JsonMessage> parse_json_line(std::string_view line);
+/// Reads what json_format() writes, and every message that parse_json() takes. Of a message that
+/// names no source, it is `default_source`.
+/// @return the frame; none: an error report, a loss or a state, which cannot be sent; or what was
+///         expected, or that this build knows no JSON.
+Parsed<std::optional<Frame>> parse_json_line(std::string_view line, Address default_source);
 
 }  // namespace roio::cli
 

@@ -19,7 +19,8 @@ bool is_wrong_bus(const std::error_code& code) {
   return code == Errc::bad_url || code == Errc::no_such_interface ||
          code == Errc::not_a_can_interface || code == Errc::no_can_support ||
          code == Errc::not_supported || code == Errc::bitrate_mismatch ||
-         code == Errc::no_such_port || code == Errc::not_a_port || code == Errc::several_bridges;
+         code == Errc::no_such_port || code == Errc::not_a_port || code == Errc::several_bridges ||
+         code == Errc::relative_path;
 }
 
 // A standard descriptor that was closed (`<&-`) would become the next thing opened: a bus's socket,

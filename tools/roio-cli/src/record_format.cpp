@@ -15,7 +15,7 @@ class TextFormat final : public RecordFormat {
 
   void frame(Buffer& out, const Received& received) override {
     time_.append(out, received.time);
-    append_frame(out, received.frame, colour_);
+    append_frame(out, received.frame, colour_, time_.gap());
     out.push_back('\n');
   }
   void lost(Buffer& out, std::uint64_t count) override {

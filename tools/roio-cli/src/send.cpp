@@ -18,6 +18,29 @@ namespace {
 
 constexpr std::size_t batch_size = 64;
 
+// How often it is asked whether somebody listens by now.
+constexpr std::chrono::milliseconds look_every{5};
+
+// So many lines are named one by one; who pipes in what is no log at all wants no more of them.
+constexpr std::uint64_t max_named_lines = 10;
+
+/// @return false when a signal came first.
+/// @throws Failure: nobody came.
+bool wait_for_listener(const Bus& bus, std::chrono::milliseconds time) {
+  const auto end = std::chrono::steady_clock::now() + time;
+  while (bus.listeners().value_or(0) == 0) {
+    const auto now = std::chrono::steady_clock::now();
+    if (now >= end) {
+      throw Failure(bus.name() + ": nobody came to listen within " + std::to_string(time.count()) +
+                    " ms; nothing was sent");
+    }
+    if (!Interrupt::sleep_until(std::min(now + look_every, end))) {
+      return false;
+    }
+  }
+  return true;
+}
+
 /// Sends frames in order, as fast as the bus takes them or one an interval.
 class Sender {
  public:
@@ -64,11 +87,7 @@ class Sender {
   std::uint64_t sent_ = 0;
 };
 
-void send_repeatedly(Sender& sender, const Message& message, std::uint64_t count) {
-  Frame frame{};
-  if (to_frame(message, frame) != Status::ok) {
-    throw UsageError("not a message that can be sent");  // the options allow none such
-  }
+void send_repeatedly(Sender& sender, const Frame& frame, std::uint64_t count) {
   const std::vector<Frame> batch(batch_size, frame);
   const bool endless = count == 0;
   bool going = true;
@@ -85,6 +104,7 @@ class LineSender {
       : sender_(sender), default_source_(default_source), reader_(STDIN_FILENO) {}
 
   [[nodiscard]] std::uint64_t refused() const { return refused_; }
+  [[nodiscard]] std::uint64_t passed_over() const { return passed_over_; }
 
   void run() {
     bool more = true;
@@ -111,13 +131,24 @@ class LineSender {
   }
 
   void take(std::string_view line) {
-    const auto frame = parse_input_line(line, default_source_);
-    if (frame) {
-      pending_.push_back(*frame);
-      return;
+    const auto parsed = parse_input_line(line, default_source_);
+    if (!parsed) {
+      refuse(parsed.error());
+    } else if (*parsed) {
+      pending_.push_back(**parsed);
+    } else {
+      ++passed_over_;
     }
+  }
+
+  void refuse(const ParseError& error) {
     ++refused_;
-    note("line " + std::to_string(line_number_) + ": " + frame.error().message);
+    if (refused_ <= max_named_lines) {
+      note("line " + std::to_string(line_number_) + ": " + error.message);
+    } else if (refused_ == max_named_lines + 1) {
+      note("line " + std::to_string(line_number_) +
+           " and others, which are not named: their number follows at the end");
+    }
   }
 
   bool send_pending() {
@@ -132,38 +163,63 @@ class LineSender {
   std::vector<Frame> pending_;
   std::uint64_t line_number_ = 0;
   std::uint64_t refused_ = 0;
+  std::uint64_t passed_over_ = 0;
 };
 
-std::uint64_t send_lines(Sender& sender, Address source) {
+/// Lines that were not sent.
+struct Unsent {
+  std::uint64_t refused = 0;
+  std::uint64_t passed_over = 0;
+};
+
+Unsent send_lines(Sender& sender, Address source) {
   if (::isatty(STDIN_FILENO) == 1) {
     note("reading JSON messages or log lines; Ctrl-D ends");
   }
   LineSender lines(sender, source);
   lines.run();
-  return lines.refused();
+  return {lines.refused(), lines.passed_over()};
+}
+
+// Who was on the bus under a hub that has just gone comes over to this process's within moments,
+// and is given what it missed.
+void wait_for_those_who_come_over(const Bus& bus) {
+  const auto end = std::chrono::steady_clock::now() + std::chrono::milliseconds(250);
+  while (bus.statistics().unheard > 0 && std::chrono::steady_clock::now() < end &&
+         Interrupt::sleep_until(std::chrono::steady_clock::now() + look_every)) {
+  }
 }
 
 // What send() accepted and close() could not hand over.
 void close(Bus& bus) {
+  wait_for_those_who_come_over(bus);
   bus.close();
+  if (const std::uint64_t unheard = bus.statistics().unheard; unheard > 0) {
+    note(bus.name() + ": nobody else was there to have " + count_of(unheard, "message"));
+  }
   if (const std::uint64_t unsent = bus.statistics().unsent; unsent > 0) {
     throw Failure(bus.name() + ": " + count_of(unsent, "message") +
                   " not handed over before the bus closed");
   }
 }
 
-int finish(const SendOptions& options, const Sender& sender, std::uint64_t refused) {
-  const std::string sent = options.bus + ": " + count_of(sender.sent(), "message") + " sent";
-  if (refused > 0) {
-    note(sent + ", " + count_of(refused, "line") + " refused");
+int finish(const SendOptions& options, const Sender& sender, const Unsent& unsent) {
+  std::string text = options.bus + ": " + count_of(sender.sent(), "message") + " sent";
+  if (unsent.refused > 0) {
+    text += ", " + count_of(unsent.refused, "line") + " refused";
   }
-  if (const int signal = Interrupt::signal()) {
-    if (refused == 0) {
-      note(sent);
-    }
+  if (unsent.passed_over > 0) {
+    text += ", " + count_of(unsent.passed_over, "line") +
+            " passed over that tell of the bus they come from";
+  }
+  const int signal = Interrupt::signal();
+  if (signal != 0 || unsent.refused > 0 || unsent.passed_over > 0) {
+    note(text);
+  }
+  if (signal != 0) {
     return exit_signal + signal;
   }
-  return refused > 0 ? exit_failure : exit_success;
+  return unsent.refused > 0 ? exit_failure : exit_success;
 }
 
 }  // namespace
@@ -171,17 +227,20 @@ int finish(const SendOptions& options, const Sender& sender, std::uint64_t refus
 int send(const SendOptions& options) {
   OpenOptions open_options;
   open_options.send_only = true;
-  const auto bus = open(options.bus, open_options);
+  const auto bus = open_until_signal(options.bus, open_options);
   const CancelOnSignal cancel_on_signal(*bus);
   Sender sender(options, *bus);
-  std::uint64_t refused = 0;
-  if (options.message) {
-    send_repeatedly(sender, *options.message, options.count);
+  Unsent unsent;
+  if (options.wait && !wait_for_listener(*bus, *options.wait)) {
+    return finish(options, sender, unsent);
+  }
+  if (options.frame) {
+    send_repeatedly(sender, *options.frame, options.count);
   } else {
-    refused = send_lines(sender, options.source);
+    unsent = send_lines(sender, options.source);
   }
   close(*bus);
-  return finish(options, sender, refused);
+  return finish(options, sender, unsent);
 }
 
 }  // namespace roio::cli

@@ -7,7 +7,7 @@
 #include <optional>
 #include <roio/address.hpp>
 #include <roio/bus.hpp>
-#include <roio/message.hpp>
+#include <roio/frame.hpp>
 #include <string>
 
 namespace roio::cli {
@@ -17,11 +17,13 @@ inline constexpr Address default_source{0, 10};
 
 struct SendOptions {
   std::string bus;
-  std::optional<Message> message;  ///< None: lines from standard input.
+  std::optional<Frame> frame;  ///< None: lines from standard input.
   Address source = default_source;
   std::uint64_t count = 1;  ///< Times the message goes out; 0: until a signal.
   std::chrono::milliseconds interval{0};
   std::chrono::milliseconds timeout{1000};  ///< Of each message.
+  /// How long to wait, first, until somebody listens on the local bus.
+  std::optional<std::chrono::milliseconds> wait;
 };
 
 /// @return the exit status; 1 when a line of the input could not be understood.

@@ -1,5 +1,6 @@
 #include "words.hpp"
 
+#include <algorithm>
 #include <charconv>
 #include <memory>
 #include <utility>
@@ -15,6 +16,12 @@ class HelpFormatter final : public CLI::Formatter {
   std::string make_usage(const CLI::App* /*app*/, std::string /*name*/) const override {
     return "Usage: roio-cli " + usage_ + '\n';
   }
+  // A flag that may have a value: CLI11 shows its default in braces.
+  std::string make_option_name(const CLI::Option* option, bool is_positional) const override {
+    const std::string name = Formatter::make_option_name(option, is_positional);
+    const std::size_t brace = name.find('{');
+    return brace == std::string::npos ? name : name.substr(0, brace) + "[=MS]";
+  }
 
  private:
   std::string usage_;
@@ -28,7 +35,10 @@ void refuse(const std::string& command, const std::string& what) {
 }
 
 void refuse_rest(const CLI::App& app, const std::string& command, const char* commands) {
-  const std::vector<std::string> rest = app.remaining();
+  std::vector<std::string> rest = app.remaining();
+  // What says that no option follows is taken, and is no word itself.
+  rest.erase(rest.begin(), std::find_if(rest.begin(), rest.end(),
+                                        [](const std::string& word) { return word != "--"; }));
   if (rest.empty()) {
     return;
   }
@@ -69,7 +79,12 @@ CLI::Option* without_type(CLI::Option* option) {
 }
 
 CLI::Option* flag(CLI::App& app, const char* name, const char* description) {
-  return app.add_flag(name)->description(description);
+  return app.add_flag(name)->description(description)->disable_flag_override();
+}
+
+CLI::Option* option(CLI::App& app, const char* name, std::string& text, const char* value,
+                    const char* description) {
+  return app.add_option(name, text, description)->type_name(value);
 }
 
 void prepare(CLI::App& app, const char* usage, const char* examples) {

@@ -41,7 +41,11 @@ T value_or_refuse(const Parsed<T>& parsed, const char* option = "") {
 }
 
 CLI::Option* without_type(CLI::Option* option);
+/// An option without a value.
 CLI::Option* flag(CLI::App& app, const char* name, const char* description);
+/// @param text where its value goes. @param value what help calls that.
+CLI::Option* option(CLI::App& app, const char* name, std::string& text, const char* value,
+                    const char* description);
 
 /// Gives a command its help, and lets it take words that nothing was expected for, for
 /// refuse_rest().

@@ -153,11 +153,13 @@ struct BridgePort {
 
 /// Looks for bridges, by HELLO on all likely ports at once. Likely are /dev/ttyACM* and
 /// /dev/ttyUSB* whose USB vendor sells Arduinos or what they are made of, and that no other program
-/// has open. The environment variable ROIO_SERIAL_PORTS, paths and patterns separated by colons,
-/// replaces that list ("/dev/ttyS3:/dev/serial/by-id/*").
+/// has open. The environment variable ROIO_SERIAL_PORTS replaces that list: paths and patterns,
+/// each from / on, with a colon between them ("/dev/ttyS3:/dev/serial/by-id/*"); a colon that no
+/// slash follows belongs to the name. A path that is not there is an entry, with the reason.
 /// Opening an Arduino's port resets it: whatever else runs on such a board starts anew.
 /// @param timeout in which a bridge must answer; an Uno's boot loader takes up to 2 s of it.
 /// @return one entry for each port, in the order of their names; empty: there is none.
+/// @throws Errc::relative_path: ROIO_SERIAL_PORTS has one.
 std::vector<BridgePort> find_bridges(Timeout timeout = std::chrono::seconds(3));
 
 }  // namespace roio

@@ -15,6 +15,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -78,6 +79,7 @@ struct Statistics {
   std::uint64_t duplicates = 0;  ///< Frames come a second time over a new hub, not delivered again.
   std::uint64_t unsent = 0;      ///< Frames accepted by send() and lost on close(), or with a hub
                                  ///< or a bridge; such that a bridge gave up, or cannot tell of.
+  std::uint64_t unheard = 0;     ///< Frames carried on a local bus while nobody else received.
   std::uint64_t overruns = 0;    ///< Reports of a controller that it lost frames, how many unsaid.
 };
 
@@ -133,6 +135,10 @@ class Bus {
 
   [[nodiscard]] virtual BusState state() const = 0;
   [[nodiscard]] virtual Statistics statistics() const = 0;
+
+  /// How many others receive from this bus, as the hub of a local bus last told. None: nobody can
+  /// tell, as on every other kind of bus, or while one hub takes over from another.
+  [[nodiscard]] virtual std::optional<std::size_t> listeners() const { return std::nullopt; }
 
   /// Makes the waits of now and later return cancelled until resume(). May be called from a signal
   /// handler. A receive() that finds frames waiting, and a send() that finds room, still take them.

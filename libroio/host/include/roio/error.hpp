@@ -26,6 +26,8 @@ enum class Errc {
   no_bridge,            ///< No bridge answered in time, or none was found.
   several_bridges,      ///< serial:auto, and there is more than one.
   bridge_refused,       ///< The bridge answered that it cannot do that.
+  relative_path,  ///< An environment variable names a file by a path that begins elsewhere than at
+                  ///< /.
 };
 
 const std::error_category& error_category() noexcept;

@@ -60,8 +60,9 @@ Parsed<Address> parse_source(std::string_view text);
 /// "0.2", or "0.*" for a broadcast.
 std::string to_string(Address address);
 
-/// Data bytes in hexadecimal as cansend takes them, two digits each, dots allowed between bytes:
-/// "5A2D00", "5A.2D.00". Empty text is no data.
+/// Data bytes in hexadecimal, two digits each; between bytes a dot may stand, as cansend takes
+/// them, or a space, as `roio-cli dump` prints them: "5A2D00", "5A.2D.00", "5A 2D 00". Empty text
+/// is no data.
 Parsed<Bytes> parse_hex(std::string_view text);
 /// Upper-case digits, no separator.
 std::string to_hex(const std::uint8_t* data, std::size_t length);

@@ -5,6 +5,7 @@
 
 #include "json/events.hpp"
 #include "json/fields.hpp"
+#include "text/decimal.hpp"
 #include "text/quote.hpp"
 #include "text/utf8.hpp"
 
@@ -60,15 +61,43 @@ JsonMessage make_message(const Fields& fields) {
   return out;
 }
 
+bool is_of_a_word(char character) {
+  return is_digit(character) || (character >= 'a' && character <= 'z') ||
+         (character >= 'A' && character <= 'Z') || character == '-' || character == '.';
+}
+
+/// Where what is in the way begins. The parser stops within a word that is none: at "ailing" of
+/// "trailing", which begins as true does; and behind a whole message it reads on to the next fault.
+std::size_t start_of_fault(std::string_view text, std::size_t fault) {
+  bool in_text = false;
+  std::size_t depth = 0;
+  for (std::size_t at = 0; at < fault; ++at) {
+    if (in_text && text[at] == '\\') {
+      ++at;
+    } else if (text[at] == '"') {
+      in_text = !in_text;
+    } else if (!in_text && text[at] == '{') {
+      ++depth;
+    } else if (!in_text && text[at] == '}' && --depth == 0) {
+      return text.find_first_not_of(" \t\r\n", at + 1);
+    }
+  }
+  while (!in_text && fault > 0 && is_of_a_word(text[fault - 1])) {
+    --fault;
+  }
+  return fault;
+}
+
 ParseError not_json(std::string_view text, const JsonEvents& events) {
-  const std::size_t offset = events.syntax_error().value_or(0);
+  std::size_t offset = events.syntax_error().value_or(0);
   const std::string field =
       events.last_field() ? std::string(R"(, in or after field ")") + events.last_field() + '"'
                           : "";
-  if (offset >= text.size()) {
+  if (offset >= text.size() && !events.is_complete()) {
     return {"JSON: ends too early, after " + std::to_string(text.size()) + " bytes" + field,
             text.size()};
   }
+  offset = start_of_fault(text, offset);
   const std::string there = quote(text.substr(offset));
   if (events.is_complete()) {
     return {"JSON: " + there + " after the message; expected nothing more", offset};

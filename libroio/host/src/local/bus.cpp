@@ -61,6 +61,7 @@ class LocalBus final : public Bus {
   [[nodiscard]] int fd() const noexcept override { return queue_.readable().fd(); }
   [[nodiscard]] BusState state() const override;
   [[nodiscard]] Statistics statistics() const override;
+  [[nodiscard]] std::optional<std::size_t> listeners() const override;
   void cancel() noexcept override { waits_.cancel(); }
   void resume() noexcept override { waits_.resume(); }
   void close() noexcept override;
@@ -240,9 +241,18 @@ Statistics LocalBus::statistics() const {
   Statistics statistics = statistics_;
   queue_.add_to(statistics);
   if (connection_) {
-    statistics.dropped += connection_->page.counters().dropped.load(std::memory_order_relaxed);
+    const HubCounters& counters = connection_->page.counters();
+    statistics.dropped += counters.dropped.load(std::memory_order_relaxed);
+    statistics.unheard += counters.unheard.load(std::memory_order_relaxed);
   }
   return statistics;
+}
+
+std::optional<std::size_t> LocalBus::listeners() const {
+  const std::lock_guard lock(mutex_);
+  return connection_ ? std::optional<std::size_t>(
+                           connection_->page.counters().listeners.load(std::memory_order_relaxed))
+                     : std::nullopt;
 }
 
 void LocalBus::close() noexcept {
@@ -369,6 +379,7 @@ void LocalBus::disconnect() {
   const std::uint64_t lost = counters.dropped.load(std::memory_order_relaxed) +
                              counters.at_risk.load(std::memory_order_relaxed);
   statistics_.dropped += lost;
+  statistics_.unheard += counters.unheard.load(std::memory_order_relaxed);
   queue_.lose(lost - std::min(lost, announced_));
   connection_.reset();
 }

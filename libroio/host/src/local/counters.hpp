@@ -7,11 +7,14 @@
 
 namespace roio::local {
 
-/// What a hub knows of one client's losses, in memory that both see: it outlives a hub that is
-/// killed, so the client can still tell what it lost with it. Written by the hub only.
+/// What a hub knows of one client's losses, and of the others on the bus, in memory that both see:
+/// it outlives a hub that is killed, so the client can still tell what it lost with it. Written by
+/// the hub only.
 struct HubCounters {
-  std::atomic<std::uint64_t> dropped;  ///< Due to the client and dropped, its queue being full.
-  std::atomic<std::uint64_t> at_risk;  ///< Reported done to their senders, still only in the hub.
+  std::atomic<std::uint64_t> dropped;    ///< Due to the client and dropped, its queue being full.
+  std::atomic<std::uint64_t> at_risk;    ///< Reported done to their senders, still only in the hub.
+  std::atomic<std::uint64_t> unheard;    ///< The client's own, carried while nobody else listened.
+  std::atomic<std::uint64_t> listeners;  ///< Other clients that have filters.
 };
 static_assert(std::atomic<std::uint64_t>::is_always_lock_free, "shared between processes");
 

@@ -54,6 +54,7 @@ void Hub::run() {
                           .count();
     accept_clients();
     read_clients();
+    note_listeners();
     transmit();
     flush_clients();
     report_done();
@@ -176,7 +177,7 @@ void Hub::greet(HubClient& client, const Hello& hello) {
   } else {
     try {
       auto station = std::make_shared<Station>(hello.client);
-      client.welcome(station, hello.rejoining != 0, Welcome{bitrate, window()});
+      client.welcome(station, hello.rejoining != 0, Welcome{bitrate, window()}, listeners());
       medium_.attach(std::move(station));
     } catch (const std::system_error&) {
       client.stream().close();  // it will ask again, and see its own error if this goes on
@@ -192,6 +193,19 @@ void Hub::take_frame(HubClient& client, const OfferedFrame& offered) {
     return;
   }
   client.station()->add(lane_of(*frame), {*frame, offered.sequence});
+}
+
+std::uint64_t Hub::listeners() const {
+  return static_cast<std::uint64_t>(std::count_if(
+      clients_.begin(), clients_.end(), [](const auto& client) { return client->listens(); }));
+}
+
+// Before anything is carried: who then looks knows of all who were to have it.
+void Hub::note_listeners() {
+  const std::uint64_t all = listeners();
+  for (const auto& client : clients_) {
+    client->note_listeners(all - (client->listens() ? 1 : 0));
+  }
 }
 
 bool Hub::must_hold() const {
@@ -216,10 +230,23 @@ void Hub::fan_out(const Medium::Transmission& transmission) {
   const std::int64_t time_ns =
       std::chrono::nanoseconds(end.time_since_epoch()).count() + wall_offset_ns_;
   const Deliver deliver{0, from->sender(), offer.sequence, time_ns, to_wire(offer.frame)};
+  HubClient* sender = nullptr;
+  bool is_heard = false;
   for (const auto& client : clients_) {
-    if (client->greeted() && client->station() != from && client->wants(tagged)) {
+    if (!client->greeted()) {
+      continue;
+    }
+    if (client->station() == from) {
+      sender = client.get();
+      continue;
+    }
+    is_heard = is_heard || client->listens();
+    if (client->wants(tagged)) {
       client->deliver(deliver, bus_number_, now_);
     }
+  }
+  if (!is_heard && sender != nullptr) {
+    sender->note_unheard();
   }
   if (history_.size() == history_limit) {
     history_.pop_front();
@@ -231,6 +258,11 @@ void Hub::fan_out(const Medium::Transmission& transmission) {
 // A client that comes over late would miss what was carried before it came; what it had from the
 // last hub it leaves out itself.
 void Hub::replay(HubClient& client) {
+  if (client.listens()) {
+    for (const auto& other : clients_) {
+      other->forget_unheard();
+    }
+  }
   client.drop(bus_number_ - history_.size());
   std::uint64_t number = bus_number_ - history_.size();
   for (const Deliver& deliver : history_) {

@@ -51,6 +51,8 @@ class Hub {
   void handle(HubClient& client, const Record& record);
   void greet(HubClient& client, const Hello& hello);
   void take_frame(HubClient& client, const OfferedFrame& offered);
+  [[nodiscard]] std::uint64_t listeners() const;
+  void note_listeners();
   void transmit();
   void replay(HubClient& client);
   void fan_out(const Medium::Transmission& transmission);

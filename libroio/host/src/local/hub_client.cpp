@@ -20,8 +20,10 @@ bool HubClient::greeting_overdue(TimePoint now) const {
   return !greeted() && now - since_ > greeting_time;
 }
 
-void HubClient::welcome(std::shared_ptr<Station> station, bool rejoining, const Welcome& welcome) {
+void HubClient::welcome(std::shared_ptr<Station> station, bool rejoining, const Welcome& welcome,
+                        std::uint64_t listeners) {
   auto page = std::make_unique<CounterPage>();
+  page->counters().listeners.store(listeners, std::memory_order_relaxed);
   Buffer bytes;
   append_record(bytes, welcome);
   // The socket is fresh, so there is room; a client that is gone already shows at the next read.
@@ -43,6 +45,22 @@ bool HubClient::consumed(std::uint64_t count, TimePoint now) {
     checkpoint_time_ = now;
   }
   return true;
+}
+
+void HubClient::note_listeners(std::uint64_t count) {
+  if (page_) {
+    page_->counters().listeners.store(count, std::memory_order_relaxed);
+  }
+}
+
+void HubClient::note_unheard() {
+  page_->counters().unheard.fetch_add(1, std::memory_order_relaxed);
+}
+
+void HubClient::forget_unheard() {
+  if (page_) {
+    page_->counters().unheard.store(0, std::memory_order_relaxed);
+  }
 }
 
 bool HubClient::wants(std::uint32_t tagged) const {

@@ -36,10 +36,19 @@ class HubClient {
   [[nodiscard]] bool greeted() const { return station_ != nullptr; }
   [[nodiscard]] bool greeting_overdue(TimePoint now) const;
 
-  /// Lets the client in. @throws std::system_error when there is no memory to share.
-  void welcome(std::shared_ptr<Station> station, bool rejoining, const Welcome& welcome);
+  /// Lets the client in. @param listeners see note_listeners(). @throws std::system_error when
+  /// there is no memory to share.
+  void welcome(std::shared_ptr<Station> station, bool rejoining, const Welcome& welcome,
+               std::uint64_t listeners);
   void refuse(const Refused& refused) { append_record(stream_.out(), refused); }
   void set_filters(std::vector<SocketCanFilter> filters) { filters_ = std::move(filters); }
+  /// Whether any frame at all may be due to it.
+  [[nodiscard]] bool listens() const { return stream_.open() && !filters_.empty(); }
+  /// Publishes how many listen, itself left out.
+  void note_listeners(std::uint64_t count);
+  /// One of its frames has been carried and nobody was there to have it; all these have been had.
+  void note_unheard();
+  void forget_unheard();
   /// True once, after a client has come over from another hub: it is owed what that one missed.
   [[nodiscard]] bool take_replay_due() { return std::exchange(replay_due_, false); }
   /// @return false: more than was ever delivered.

@@ -11,6 +11,7 @@
 #include <cstdlib>
 #include <cstring>
 #include <roio/error.hpp>
+#include <roio/text.hpp>
 #include <utility>
 
 namespace roio::local {
@@ -72,7 +73,14 @@ const sockaddr* generic(const sockaddr_un& address) {
 std::string folder() {
   // Read once at open(); a program that changes its environment from another thread is on its own.
   const char* chosen = std::getenv("ROIO_RUNTIME_DIR");
-  return chosen != nullptr && *chosen != '\0' ? chosen : "/tmp/roio-" + std::to_string(::geteuid());
+  if (chosen == nullptr || *chosen == '\0') {
+    return "/tmp/roio-" + std::to_string(::geteuid());
+  }
+  // Programs in different folders would be on different buses of one name, and none would say so.
+  if (*chosen != '/') {
+    throw std::system_error(Errc::relative_path, "ROIO_RUNTIME_DIR " + quote(chosen));
+  }
+  return chosen;
 }
 
 HubSeat::HubSeat(UniqueFd lock, UniqueFd listener, std::string lock_path, std::string socket_path)

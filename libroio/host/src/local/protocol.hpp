@@ -28,7 +28,7 @@
 
 namespace roio::local {
 
-inline constexpr std::uint16_t protocol_version = 1;
+inline constexpr std::uint16_t protocol_version = 2;
 inline constexpr std::array<char, 4> magic = {'R', 'O', 'I', 'O'};
 inline constexpr std::size_t max_filters = 512;  // as many as SocketCAN takes
 

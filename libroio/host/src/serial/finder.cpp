@@ -64,12 +64,15 @@ void ask(BridgePort& found, const Deadline& deadline) {
               [&session] { return session.phase() == SerialSession::Phase::closed; });
 }
 
-std::string why_not(const std::error_code& code) {
+std::string why_not(const std::error_code& code, const std::string& path) {
   if (code == Errc::port_in_use) {
     return "another program has it open";
   }
   if (code == Errc::port_not_permitted) {
-    return "no permission; join the group dialout";
+    return "no permission; " + how_to_be_permitted(path);
+  }
+  if (code == Errc::no_such_port) {
+    return "no such serial port";
   }
   return code.message();
 }
@@ -82,7 +85,7 @@ void look(BridgePort& found, const Deadline& deadline) {
     }
     ask(found, deadline);
   } catch (const std::system_error& error) {
-    found.why_not = why_not(error.code());
+    found.why_not = why_not(error.code(), found.path);
   }
 }
 

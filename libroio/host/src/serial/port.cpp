@@ -13,6 +13,7 @@
 #include <roio/error.hpp>
 #include <system_error>
 
+#include "serial/ports.hpp"
 #include "serial/termios.hpp"
 
 namespace roio::serial {
@@ -85,7 +86,9 @@ bool would_wait() {
 SerialPort::SerialPort(const std::string& path, const std::string& name, std::uint32_t rate_bps)
     : fd_(::open(path.c_str(), O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC)), rate_bps_(rate_bps) {
   if (!fd_) {
-    fail(name, reason(errno));
+    const std::error_code code = reason(errno);
+    fail(code == Errc::port_not_permitted ? name + " (" + how_to_be_permitted(path) + ")" : name,
+         code);
   }
   if (::isatty(fd()) == 0) {
     fail(name, Errc::not_a_port);

@@ -1,12 +1,16 @@
 #include "serial/ports.hpp"
 
 #include <glob.h>
+#include <grp.h>
+#include <sys/stat.h>
 
 #include <algorithm>
 #include <array>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <roio/error.hpp>
+#include <roio/text.hpp>
 #include <string_view>
 #include <system_error>
 
@@ -25,18 +29,33 @@ constexpr const char* ports_variable = "ROIO_SERIAL_PORTS";
 std::vector<std::string> matches(const std::string& pattern) {
   std::vector<std::string> paths;
   glob_t found{};
-  if (::glob(pattern.c_str(), 0, nullptr, &found) == 0) {
+  // A name that is no pattern stands for itself: a port that is not there is worth a word.
+  if (::glob(pattern.c_str(), GLOB_NOMAGIC, nullptr, &found) == 0) {
     paths.assign(found.gl_pathv, found.gl_pathv + found.gl_pathc);
   }
   ::globfree(&found);
   return paths;
 }
 
+// Names below /dev/serial/by-path hold colons, and never one before a slash.
+std::size_t end_of_first(std::string_view patterns) {
+  std::size_t end = patterns.find(':');
+  while (end < patterns.size() && end + 1 < patterns.size() && patterns[end + 1] != '/' &&
+         patterns[end + 1] != ':') {
+    end = patterns.find(':', end + 1);
+  }
+  return std::min(end, patterns.size());
+}
+
 std::vector<std::string> all_matches(std::string_view patterns) {
   std::vector<std::string> paths;
   while (!patterns.empty()) {
-    const std::size_t end = std::min(patterns.find(':'), patterns.size());
+    const std::size_t end = end_of_first(patterns);
     if (end > 0) {
+      if (patterns.front() != '/') {
+        throw std::system_error(Errc::relative_path,
+                                std::string(ports_variable) + " " + quote(patterns.substr(0, end)));
+      }
       const auto some = matches(std::string(patterns.substr(0, end)));
       paths.insert(paths.end(), some.begin(), some.end());
     }
@@ -115,6 +134,21 @@ bool is_open_anywhere(const std::string& path) {
     }
   }
   return false;
+}
+
+std::string how_to_be_permitted(const std::string& path) {
+  constexpr mode_t group_may = S_IRGRP | S_IWGRP;
+  struct stat status {};
+  if (::stat(path.c_str(), &status) != 0 || (status.st_mode & group_may) != group_may) {
+    return "only its owner may; a udev rule gives it a group";
+  }
+  const std::string number = std::to_string(status.st_gid);
+  group entry{};
+  group* found = nullptr;
+  std::array<char, 4096> names{};
+  static_cast<void>(::getgrgid_r(status.st_gid, &entry, names.data(), names.size(), &found));
+  const std::string name = found != nullptr ? found->gr_name : number;
+  return "join its group " + name + ": `sudo usermod -aG " + name + " $USER`, and log in again";
 }
 
 }  // namespace roio::serial

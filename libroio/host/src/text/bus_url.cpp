@@ -46,6 +46,11 @@ bool is_interface_character(char character) {
 Parsed<BusUrl> read_socketcan(Part part) {
   const auto [target, options] = split_options(part);
   const std::string_view name = target.text;
+  if (name.starts_with('/')) {
+    return ParseError{"a path is no interface; expected serial:" + std::string(name) +
+                          " for the bridge on that serial port",
+                      target.offset};
+  }
   if (name.empty() || name.size() > max_interface_name) {
     return ParseError{"an interface name of " + std::to_string(name.size()) +
                           " bytes; expected 1..15, such as can0",

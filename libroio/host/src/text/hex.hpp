@@ -24,7 +24,8 @@ constexpr std::uint8_t hex_value(char digit) noexcept {
 }
 
 /// parse_hex() with errors that do not quote the whole text, for texts of which it is a part.
-Parsed<Bytes> read_hex(std::string_view text);
+/// @param spaces whether a space may stand where a dot may.
+Parsed<Bytes> read_hex(std::string_view text, bool spaces = false);
 
 }  // namespace roio
 

@@ -66,7 +66,7 @@ std::string to_string(Address address) {
 }
 
 Parsed<Bytes> parse_hex(std::string_view text) {
-  return in_context("data", text, read_hex(text));
+  return in_context("data", text, read_hex(text, true));
 }
 
 std::string to_hex(const std::uint8_t* data, std::size_t length) {
