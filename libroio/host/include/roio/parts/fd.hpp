@@ -4,10 +4,12 @@
 #include <cstdint>
 #include <utility>
 
+#include <roio/export.hpp>
+
 namespace roio {
 
 /// Owns a file descriptor; -1 is none.
-class UniqueFd {
+class ROIO_EXPORT UniqueFd {
  public:
   UniqueFd() = default;
   explicit UniqueFd(int fd) noexcept : fd_(fd) {}
@@ -31,7 +33,7 @@ class UniqueFd {
 };
 
 /// A flag that poll() can wait for: readable while it is set.
-class EventFlag {
+class ROIO_EXPORT EventFlag {
  public:
   EventFlag();  ///< @throws std::system_error when there are no descriptors left.
 

@@ -3,12 +3,13 @@
 
 #include <atomic>
 #include <roio/bus.hpp>
+#include <roio/export.hpp>
 #include <roio/parts/fd.hpp>
 
 namespace roio {
 
 /// Waits that another thread or a signal handler can end.
-class Waits {
+class ROIO_EXPORT Waits {
  public:
   void cancel() noexcept {
     is_cancelled_.store(true, std::memory_order_release);
