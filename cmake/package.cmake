@@ -7,6 +7,7 @@
 set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_NAME roio)
 set(CPACK_PACKAGE_VENDOR Roio)
+set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "robot's nervous system on CAN, from microcontroller to PC")
 set(CPACK_PACKAGE_CONTACT "Roio maintainers <noreply@roio.invalid>")
 set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
 set(CPACK_COMPONENTS_ALL development)
@@ -31,7 +32,8 @@ set(CPACK_DEBIAN_TOOLS_PACKAGE_SHLIBDEPS ON)
 set(CPACK_DEBIAN_TOOLS_PACKAGE_SUGGESTS
     "can-utils, arduino-builder, arduino-ctags, arduino-core-avr, avr-libc, gcc-avr, python3")
 set(CPACK_DEBIAN_TOOLS_DESCRIPTION
-"robot's nervous system on CAN: command line and simulator
+"This package has the command line and the simulator.
+.
 roio-cli shows and sends messages on a CAN bus, a bus between the programs of
 one machine, or through an Arduino as a bridge. roio-sim runs the firmware of
 Arduino boards, unchanged, on a simulated bus.
@@ -43,7 +45,8 @@ set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_NAME libroio-dev)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SECTION libdevel)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SUGGESTS "roio, cmake, pkgconf")
 set(CPACK_DEBIAN_DEVELOPMENT_DESCRIPTION
-"robot's nervous system on CAN: C++20 library to develop with
+"This package has the C++20 library to develop with.
+.
 Short addressed messages over SocketCAN, a bus between the programs of one
 machine, or an Arduino as a bridge. Headers and the static library, to be
 found by CMake and pkg-config.")
