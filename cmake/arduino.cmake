@@ -52,7 +52,7 @@ add_custom_command(OUTPUT ${ROIO_LIBRARY_ZIP}
   DEPENDS ${library_sources} ${CMAKE_CURRENT_BINARY_DIR}/library/sources
           ${PROJECT_SOURCE_DIR}/cmake/arduino_library.py
   COMMENT "Packing the Arduino library" VERBATIM)
-add_custom_target(arduino_library DEPENDS ${ROIO_LIBRARY_ZIP})
+add_custom_target(arduino_library ALL DEPENDS ${ROIO_LIBRARY_ZIP})
 
 # --- the tools ----------------------------------------------------------------------
 

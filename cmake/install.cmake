@@ -5,6 +5,8 @@ if(NOT ROIO_INSTALL)
 endif()
 include(CMakePackageConfigHelpers)
 
+# Two components, which become packages: tools, as the tools' folders say, and what is not of theirs.
+set(CMAKE_INSTALL_DEFAULT_COMPONENT_NAME development)
 set(roio_config_dir ${CMAKE_INSTALL_LIBDIR}/cmake/roio)
 set(roio_pkgconfig_dir ${CMAKE_INSTALL_LIBDIR}/pkgconfig)
 
@@ -50,6 +52,9 @@ install(FILES ${CMAKE_CURRENT_BINARY_DIR}/roio-config.cmake
 file(RELATIVE_PATH roio_prefix_from_pc /prefix/${roio_pkgconfig_dir} /prefix)
 string(REGEX REPLACE "/$" "" roio_prefix_from_pc "${roio_prefix_from_pc}")
 set(pc_files roio.pc)
+if(BUILD_SHARED_LIBS)
+  set(roio_pc_definitions " -DROIO_SHARED")
+endif()
 if(ROIO_BUILD_JSON)
   list(APPEND pc_files roio-json.pc)
 endif()
@@ -60,7 +65,7 @@ endforeach()
 
 # --- and away again ---------------------------------------------------------------------------------
 
-install(FILES LICENSE README.md CHANGELOG.md TYPE DOC)
+install(FILES LICENSE README.md CHANGELOG.md TYPE DOC COMPONENT tools)
 if(PROJECT_IS_TOP_LEVEL)
   add_custom_target(uninstall
     COMMAND ${CMAKE_COMMAND} -DMANIFEST=${CMAKE_CURRENT_BINARY_DIR}/install_manifest.txt

@@ -1,5 +1,6 @@
 # cmake -DMANIFEST=.../install_manifest.txt -P uninstall.cmake: removes the files that the last
-# install put there, and Roio's own folders when nothing else is left in them.
+# install put there, and Roio's own folders when nothing else is left in them. What scripts/install
+# put there is for scripts/uninstall.
 if(NOT EXISTS "${MANIFEST}")
   message(FATAL_ERROR "${MANIFEST} is not there: nothing has been installed from this build folder")
 endif()
@@ -12,12 +13,13 @@ foreach(file IN LISTS files)
     file(REMOVE "${path}")
   endif()
   get_filename_component(folder "${path}" DIRECTORY)
-  if(folder MATCHES "/roio$")
+  if(folder MATCHES "/roio(/|$)")
     list(APPEND folders "${folder}")
   endif()
 endforeach()
 
 list(REMOVE_DUPLICATES folders)
+list(SORT folders ORDER DESCENDING)  # the innermost first
 foreach(folder IN LISTS folders)
   file(GLOB left "${folder}/*")
   if(NOT left)

@@ -68,7 +68,7 @@ class Lists(unittest.TestCase):
                                            capture_output=True, text=True, timeout=GUARD).stdout.split()
                 self.assertEqual(sorted(before + said), sorted(installed))
                 before += said
-        self.assertEqual(sections[::2], ["demo", "bench", "test"])
+        self.assertEqual(sections[::2], ["install", "demo", "bench", "test"])
 
     def test_changelog_begins_with_this_version(self):
         header = (SOURCE / "libroio/core/include/roio/version.hpp").read_text()

@@ -18,13 +18,14 @@
 #include <vector>
 
 #include <roio/bus.hpp>
+#include <roio/export.hpp>
 #include <roio/header.hpp>
 
 namespace roio {
 
 enum class BridgeBoard : std::uint8_t { other, uno, leonardo, mega };
 /// "uno", "leonardo", "mega", as `scripts/flash` calls them; "other".
-const char* to_string(BridgeBoard board) noexcept;
+ROIO_EXPORT const char* to_string(BridgeBoard board) noexcept;
 
 enum class BridgeMode : std::uint8_t {
   normal,
@@ -32,7 +33,7 @@ enum class BridgeMode : std::uint8_t {
   loopback,  ///< Off the bus: hears its own frames.
 };
 /// "normal", "listen", "loopback": as in the URL's mode=.
-const char* to_string(BridgeMode mode) noexcept;
+ROIO_EXPORT const char* to_string(BridgeMode mode) noexcept;
 
 /// Of the bridge's controller. BusState is the same with less detail: no_controller and stuck are
 /// BusState::down there.
@@ -47,7 +48,7 @@ enum class BridgeState : std::uint8_t {
 };
 /// "error-active", "error-warning", "error-passive", "bus-off", "no controller", "bus stuck",
 /// "absent".
-const char* to_string(BridgeState state) noexcept;
+ROIO_EXPORT const char* to_string(BridgeState state) noexcept;
 
 struct FirmwareVersion {
   std::uint8_t major = 0;
@@ -55,7 +56,7 @@ struct FirmwareVersion {
   std::uint8_t patch = 0;
 };
 /// "0.1.0".
-std::string to_string(const FirmwareVersion& version);
+ROIO_EXPORT std::string to_string(const FirmwareVersion& version);
 
 struct BridgeInfo {
   std::string port;  ///< "/dev/ttyACM0".
@@ -104,7 +105,7 @@ struct BridgeLineCounters {
                                     ///< controller was lost). The last two are Statistics::unsent.
 };
 
-class Bridge {
+class ROIO_EXPORT Bridge {
  public:
   Bridge() = default;
   Bridge(const Bridge&) = delete;
@@ -141,7 +142,7 @@ class Bridge {
 
 /// The bridge behind a bus that open("serial:...") returned; null for any other kind of bus. Lives
 /// as long as the bus.
-Bridge* bridge_of(Bus& bus) noexcept;
+ROIO_EXPORT Bridge* bridge_of(Bus& bus) noexcept;
 
 /// A serial port where a bridge may be.
 struct BridgePort {
@@ -160,7 +161,7 @@ struct BridgePort {
 /// @param timeout in which a bridge must answer; an Uno's boot loader takes up to 2 s of it.
 /// @return one entry for each port, in the order of their names; empty: there is none.
 /// @throws Errc::relative_path: ROIO_SERIAL_PORTS has one.
-std::vector<BridgePort> find_bridges(Timeout timeout = std::chrono::seconds(3));
+ROIO_EXPORT std::vector<BridgePort> find_bridges(Timeout timeout = std::chrono::seconds(3));
 
 }  // namespace roio
 

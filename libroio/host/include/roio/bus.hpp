@@ -20,6 +20,7 @@
 #include <string>
 #include <string_view>
 
+#include <roio/export.hpp>
 #include <roio/filter_socketcan.hpp>
 #include <roio/frame.hpp>
 
@@ -39,7 +40,7 @@ enum class Result : std::uint8_t {
   cancelled,  ///< cancel() was called, before or during the wait.
   closed,     ///< close() was called, before or during the wait.
 };
-const char* to_string(Result result) noexcept;
+ROIO_EXPORT const char* to_string(Result result) noexcept;
 
 /// How many of the frames offered went through, and why not more.
 struct [[nodiscard]] Transfer {
@@ -63,7 +64,7 @@ enum class BusState : std::uint8_t {
   down,     ///< The interface is administratively down; the bridge has no working controller.
   absent,   ///< The interface, the hub or the bridge is gone; it is looked for all the time.
 };
-const char* to_string(BusState state) noexcept;
+ROIO_EXPORT const char* to_string(BusState state) noexcept;
 
 /// Counted since open(). Every frame offered or due is in one of these.
 struct Statistics {
@@ -94,7 +95,7 @@ struct OpenOptions {
   Timeout open_timeout = std::chrono::seconds(5);
 };
 
-class Bus {
+class ROIO_EXPORT Bus {
  public:
   Bus() = default;
   Bus(const Bus&) = delete;
@@ -161,7 +162,7 @@ class Bus {
 ///        "?baud=RATE" (at most; 115200, 250000, 500000, 1000000, 2000000; none: 1000000),
 ///        "&bitrate=BPS" and "&mode=normal|listen|loopback" (none: as the bridge has them).
 /// @throws std::system_error with an Errc that says what is wrong with it and what was expected.
-std::unique_ptr<Bus> open(std::string_view url, const OpenOptions& options = {});
+ROIO_EXPORT std::unique_ptr<Bus> open(std::string_view url, const OpenOptions& options = {});
 
 }  // namespace roio
 

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include <roio/bus.hpp>
+#include <roio/export.hpp>
 
 namespace roio {
 
@@ -22,11 +23,11 @@ struct CanInterface {
 /// The CAN interfaces of this network namespace, in the kernel's order; none where the kernel has
 /// no CAN.
 /// @throws std::system_error: the kernel could not be asked.
-std::vector<CanInterface> can_interfaces();
+ROIO_EXPORT std::vector<CanInterface> can_interfaces();
 
 /// The local buses of this user that some program is on: "local:robot", sorted by name.
 /// @throws std::system_error: a folder that cannot be read.
-std::vector<std::string> local_buses();
+ROIO_EXPORT std::vector<std::string> local_buses();
 
 }  // namespace roio
 

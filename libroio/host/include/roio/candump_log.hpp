@@ -15,6 +15,7 @@
 #include <string_view>
 
 #include <roio/bus.hpp>
+#include <roio/export.hpp>
 #include <roio/frame.hpp>
 #include <roio/text.hpp>
 
@@ -32,12 +33,12 @@ struct LogLine {
 /// One line, without or with its line end ("\n" or "\r\n"). Anything after the frame but blanks is
 /// refused, except the direction mark " R" or " T" of candump -x. CAN FD ("##") and CAN XL
 /// frames are refused by name. Fractions of a second of 1..9 digits are taken.
-Parsed<LogLine> parse_log_line(std::string_view line);
+ROIO_EXPORT Parsed<LogLine> parse_log_line(std::string_view line);
 
 /// The frame part alone: "123#1122", as cansend takes it (dots between bytes allowed). Where
 /// cansend guesses, this refuses: a ninth byte, an identifier above 7FF in three digits, text after
 /// R.
-Parsed<Frame> parse_frame_text(std::string_view text);
+ROIO_EXPORT Parsed<Frame> parse_frame_text(std::string_view text);
 
 /// Room for the longest line that format_log_line() writes.
 inline constexpr std::size_t max_log_line = 117;
@@ -47,11 +48,12 @@ inline constexpr std::size_t max_log_line = 117;
 /// @param interface_name cut off after max_log_name bytes.
 /// @param frame one that is_valid(); others are cut down to fields that fit.
 /// @return bytes written, no terminating zero.
-std::size_t format_log_line(std::span<char, max_log_line> out, Timestamp time,
-                            std::string_view interface_name, const Frame& frame) noexcept;
+ROIO_EXPORT std::size_t format_log_line(std::span<char, max_log_line> out, Timestamp time,
+                                        std::string_view interface_name,
+                                        const Frame& frame) noexcept;
 
 /// The frame part alone, no line end.
-std::string to_text(const Frame& frame);
+ROIO_EXPORT std::string to_text(const Frame& frame);
 
 }  // namespace roio
 

@@ -5,6 +5,8 @@
 
 #include <system_error>
 
+#include <roio/export.hpp>
+
 namespace roio {
 
 enum class Errc {
@@ -30,7 +32,7 @@ enum class Errc {
                   ///< /.
 };
 
-const std::error_category& error_category() noexcept;
+ROIO_EXPORT const std::error_category& error_category() noexcept;
 
 inline std::error_code make_error_code(Errc code) noexcept {
   return {static_cast<int>(code), error_category()};

@@ -16,6 +16,7 @@
 #include <string_view>
 
 #include <roio/bus.hpp>
+#include <roio/export.hpp>
 #include <roio/message.hpp>
 #include <roio/text.hpp>
 
@@ -34,14 +35,14 @@ struct JsonMessage {
 /// which the original has between software modules, are refused as such.
 /// ParseError::offset is that of a syntax error; where the field is named, it is 0. Throws nothing
 /// but std::bad_alloc. Fractions of a timestamp are taken to the nanosecond.
-Parsed<JsonMessage> parse_json(std::string_view text);
+ROIO_EXPORT Parsed<JsonMessage> parse_json(std::string_view text);
 
 /// Encodes one message on one line, no line end: the original's fields in the original's order,
 /// then priority when urgent, class when not message, source when has_source, timestamp when there
 /// is one. The address is left out of a broadcast. A timestamp has microseconds: what is below is
 /// cut off, and a time before 1970 becomes 0.
 /// @param message one that to_frame() takes (its source, when it has one, too).
-std::string to_json(const JsonMessage& message);
+ROIO_EXPORT std::string to_json(const JsonMessage& message);
 
 }  // namespace roio
 

@@ -13,6 +13,7 @@
 #include <span>
 
 #include <roio/bus.hpp>
+#include <roio/export.hpp>
 #include <roio/filter.hpp>
 #include <roio/message.hpp>
 
@@ -38,7 +39,7 @@ struct NodeCounters {
   std::uint64_t not_wanted = 0;      ///< Let through by a filter that could not say it exactly.
 };
 
-class Node {
+class ROIO_EXPORT Node {
  public:
   /// A node that hears its own address and broadcasts to its subnet.
   /// @throws std::invalid_argument: own is not 0..31 . 0..254, or bus is null.

@@ -13,6 +13,7 @@
 #include <variant>
 
 #include <roio/bridge.hpp>
+#include <roio/export.hpp>
 #include <roio/frame.hpp>
 #include <roio/header.hpp>
 
@@ -45,7 +46,7 @@ class [[nodiscard]] Parsed {
 /// A text of any origin made fit for one line of an error message: in double quotes, with control
 /// characters and bytes that are no UTF-8 as \xNN (\n, \r, \t, \", \\ as in C), and cut off after
 /// about 48 bytes, saying how long it was.
-std::string quote(std::string_view text);
+ROIO_EXPORT std::string quote(std::string_view text);
 
 /// Up to 8 data bytes.
 struct Bytes {
@@ -54,27 +55,27 @@ struct Bytes {
 };
 
 /// "SUBNET.NODE": "0.2", "31.254"; "0.*" and "0.255" are the broadcast address of subnet 0.
-Parsed<Address> parse_address(std::string_view text);
+ROIO_EXPORT Parsed<Address> parse_address(std::string_view text);
 /// The same, without the broadcast address: what a node may call itself.
-Parsed<Address> parse_source(std::string_view text);
+ROIO_EXPORT Parsed<Address> parse_source(std::string_view text);
 /// "0.2", or "0.*" for a broadcast.
-std::string to_string(Address address);
+ROIO_EXPORT std::string to_string(Address address);
 
 /// Data bytes in hexadecimal, two digits each; between bytes a dot may stand, as cansend takes
 /// them, or a space, as `roio-cli dump` prints them: "5A2D00", "5A.2D.00", "5A 2D 00". Empty text
 /// is no data.
-Parsed<Bytes> parse_hex(std::string_view text);
+ROIO_EXPORT Parsed<Bytes> parse_hex(std::string_view text);
 /// Upper-case digits, no separator.
-std::string to_hex(const std::uint8_t* data, std::size_t length);
+ROIO_EXPORT std::string to_hex(const std::uint8_t* data, std::size_t length);
 
 /// "urgent" and "normal"; "message", "system", "stream" and "reserved".
-const char* to_string(Priority priority) noexcept;
-const char* to_string(MessageClass message_class) noexcept;
-Parsed<Priority> parse_priority(std::string_view text);
-Parsed<MessageClass> parse_class(std::string_view text);
+ROIO_EXPORT const char* to_string(Priority priority) noexcept;
+ROIO_EXPORT const char* to_string(MessageClass message_class) noexcept;
+ROIO_EXPORT Parsed<Priority> parse_priority(std::string_view text);
+ROIO_EXPORT Parsed<MessageClass> parse_class(std::string_view text);
 
 /// "normal", "listen" and "loopback".
-Parsed<BridgeMode> parse_bridge_mode(std::string_view text);
+ROIO_EXPORT Parsed<BridgeMode> parse_bridge_mode(std::string_view text);
 
 /// What open() takes.
 struct BusUrl {
@@ -86,7 +87,7 @@ struct BusUrl {
   std::optional<std::uint32_t> baud{};  ///< Of a serial line, at most; bit/s.
   std::optional<BridgeMode> mode{};     ///< Of a bridge.
 };
-Parsed<BusUrl> parse_bus_url(std::string_view text);
+ROIO_EXPORT Parsed<BusUrl> parse_bus_url(std::string_view text);
 
 }  // namespace roio
 

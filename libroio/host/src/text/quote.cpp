@@ -1,8 +1,6 @@
-#include "text/quote.hpp"
-
 #include <cstddef>
 #include <cstdint>
-#include <utility>
+#include <roio/text.hpp>
 
 #include "text/utf8.hpp"
 
@@ -81,11 +79,6 @@ std::string quote(std::string_view text) {
     return out += '"';
   }
   return out += "...\" (" + std::to_string(text.size()) + " bytes)";
-}
-
-ParseError in_context(const char* what, std::string_view text, ParseError error) {
-  error.message = std::string(what) + ' ' + quote(text) + ": " + error.message;
-  return error;
 }
 
 }  // namespace roio

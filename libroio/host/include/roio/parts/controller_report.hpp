@@ -10,6 +10,7 @@
 
 #include <cstdint>
 #include <roio/bus.hpp>
+#include <roio/export.hpp>
 #include <roio/frame.hpp>
 
 namespace roio {
@@ -27,13 +28,13 @@ struct ControllerView {
 
 /// Whether there is something to report: the state or a count has changed. The error counters alone
 /// are nothing.
-bool is_news(const ControllerView& before, const ControllerView& now);
+ROIO_EXPORT bool is_news(const ControllerView& before, const ControllerView& now);
 
 /// The report as SocketCAN's drivers put it into a frame, so that one decoder does for all.
 /// @return of FrameKind::error and 8 bytes: bytes 6 and 7 are TEC and REC as they are now. Without
 ///         news it is a report of these alone.
 /// Source: <linux/can/error.h>.
-Frame error_report(const ControllerView& before, const ControllerView& now);
+ROIO_EXPORT Frame error_report(const ControllerView& before, const ControllerView& now);
 
 }  // namespace roio
 

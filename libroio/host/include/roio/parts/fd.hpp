@@ -3,13 +3,14 @@
 #define ROIO_PARTS_FD_HPP
 
 #include <cstdint>
+#include <roio/export.hpp>
 #include <utility>
 
 namespace roio {
 
 /// Owns a file descriptor and closes it at its end; -1 is none. Moves as unique_ptr does. For one
 /// thread at a time; no errors (what close() says is not heard).
-class UniqueFd {
+class ROIO_EXPORT UniqueFd {
  public:
   UniqueFd() = default;
   explicit UniqueFd(int fd) noexcept : fd_(fd) {}
@@ -38,7 +39,7 @@ class UniqueFd {
 ///
 /// Who sets it does so after the thing that it tells of; who waits clears it before (or under the
 /// same lock as) looking whether the thing is there. The other way around a change is missed.
-class EventFlag {
+class ROIO_EXPORT EventFlag {
  public:
   EventFlag();  ///< @throws std::system_error when there are no descriptors left.
 

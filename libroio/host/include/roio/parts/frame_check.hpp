@@ -1,6 +1,7 @@
 #ifndef ROIO_PARTS_FRAME_CHECK_HPP
 #define ROIO_PARTS_FRAME_CHECK_HPP
 
+#include <roio/export.hpp>
 #include <roio/frame.hpp>
 #include <span>
 
@@ -9,7 +10,7 @@ namespace roio {
 /// What every backend asks of frames before it sends the first of them: each is_valid(), and none
 /// an error report. So a bad frame in a batch sends nothing. Any thread.
 /// @throws std::system_error Errc::bad_frame, naming the frame and what is wrong with it.
-void check_sendable(std::span<const Frame> frames);
+ROIO_EXPORT void check_sendable(std::span<const Frame> frames);
 
 }  // namespace roio
 

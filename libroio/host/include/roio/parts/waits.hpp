@@ -3,6 +3,7 @@
 
 #include <atomic>
 #include <roio/bus.hpp>
+#include <roio/export.hpp>
 #include <roio/parts/fd.hpp>
 
 namespace roio {
@@ -13,7 +14,7 @@ namespace roio {
 /// Cancelled and closed are states, not events: a wait that begins afterwards ends at once, too.
 /// Closed is for ever, and goes before cancelled.
 /// The default constructor throws std::system_error when there are no descriptors left.
-class Waits {
+class ROIO_EXPORT Waits {
  public:
   /// Safe in a signal handler.
   void cancel() noexcept {
