@@ -1,6 +1,7 @@
 // Frames come out in the order in which they were on the bus, whatever happens while they are read.
 //
-// tests/firmware/mutation takes the driver's rules for that away one at a time, and sees these tests fail:
+// tests/firmware/mutation takes the driver's rules for that away one at a time, and sees these
+// tests fail:
 //   the older frame is in RXB1 if that was full when RXB0   AFrameRollsOverWhileRxb0IsRead,
 //   was freed, and is read first then                        EveryInterleaving...
 //   no longer, once RXB1 has been read                       EveryInterleaving...
