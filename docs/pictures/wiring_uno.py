@@ -13,6 +13,10 @@ WIRES = {"GND": ("GND", 456, ""), "SO": ("12", 476, "hot"), "SI": ("11", 496, "h
          "SCK": ("13", 436, "hot"), "INT": ("2", 536, "hot dashed")}
 
 
+def hole(p, x, y):
+    p.bar(x - 4, y - 4, 8, 8, "hole", 0)
+
+
 def uno(p):
     """Draws the board; gives the places of its pins."""
     x, y = UNO
@@ -20,6 +24,7 @@ def uno(p):
     p.bar(x + 200, y - 28, 72, 84, "metal", 4)
     p.text(x + 236, y + 12, "USB", "small on-metal", "middle")
     p.bar(x + 36, y - 12, 56, 76, "metal", 4)
+    p.text(x + 64, y + 20, "power", "small on-metal", "middle")
     p.text(x + 156, y + 196, "Arduino Uno", "bold big", "middle")
     places = {}
     for column, names, top, anchor, label in ((x + 304, DIGITAL, y + 92, "end", -14), (x + 16, POWER, y + 148, "start", 14)):
@@ -29,7 +34,7 @@ def uno(p):
                 continue
             used = name in USED and (name, anchor) != ("GND", "start")
             places.setdefault((name, anchor), (column, top + PIN * row))
-            p.raw(f'<rect x="{column - 4}" y="{top + PIN * row - 4}" width="8" height="8" class="hole"/>')
+            hole(p, column, top + PIN * row)
             p.text(column + label, top + PIN * row, name, "small mono" + (" bold accent" if used else " muted"), anchor)
     return places
 
@@ -41,7 +46,7 @@ def module(p):
     p.bar(x + 8, y + 28, PIN, PIN * len(HEADER), "dark", 2)
     for row, name in enumerate(HEADER):
         places[name] = (x + 16, y + 36 + PIN * row)
-        p.dot(*places[name], "hole", 3)
+        hole(p, *places[name])
         p.text(x + 30, places[name][1], name, "small mono bold", "start")
     p.bar(x + 80, y + 16, 52, 36, "metal", 16)
     p.text(x + 106, y + 34, "8.000", "small mono on-metal", "middle")
