@@ -3,7 +3,8 @@
 
 usage: docs/pictures/record.py
 
-Runs the real demo in a terminal of its own. Run it once before, so that the build is no part of the recording.
+Runs the real demo in a terminal of its own. Run it once before, so that the build is no part of the recording, and
+on a machine that does nothing else: a recording in which the boards could not keep up is refused.
 Two names that are new in each run are replaced, so that recordings can be compared: that of the serial line's
 temporary file, and the number in the bus's name.
 """
@@ -51,8 +52,11 @@ def main():
         print(__doc__)
         return 0 if set(sys.argv[1:]) <= {"-h", "--help"} else 2
     lines, status = record()
-    if status:
-        print(*[line for _, line in lines], f"record.py: scripts/demo ended with {status}", sep="\n", file=sys.stderr)
+    trouble = [line for _, line in lines if re.search(r"behind real time|: No such file", line)]
+    if status or trouble:
+        print(*[line for _, line in lines], sep="\n", file=sys.stderr)
+        print(f"record.py: expected a demo that goes well, on a machine with time for it; got status {status}"
+              + "".join(f", '{line.strip()}'" for line in trouble[:1]), file=sys.stderr)
         return 1
     header = {"version": 2, "width": COLUMNS, "height": ROWS, "title": "scripts/demo"}
     events = [[0.0, "o", "$ scripts/demo\r\n"]]
