@@ -4,6 +4,7 @@ A picture is a card with a background of its own: it stays legible on any page, 
 follow the reader's light or dark mode or not. Positions of shapes are multiples of 4 px; the kit insists.
 """
 
+import re
 from xml.sax.saxutils import escape
 
 # One accent colour; everything else is grey. Each text colour has a contrast of 4.5 : 1 or more on every
@@ -33,8 +34,14 @@ text{{font:14px {SANS};fill:var(--ink)}}
 """
 
 
-def variables(palette):
-    return ";".join(f"--{name}:{value}" for name, value in palette.items())
+def coloured(rules, palette):
+    """The rules with a palette's colours in them. (Not left to CSS: what is no browser does not know var().)"""
+    return re.sub(r"var\(--(\w+)\)", lambda name: palette[name[1]], rules)
+
+
+def in_dark(rules):
+    """Of the rules those that name a colour, in dark mode's."""
+    return coloured("".join(re.findall(r"[^{}]+\{[^{}]*var\(--[^{}]*\}", rules)), DARK)
 
 
 def number(value):
@@ -140,14 +147,14 @@ class Picture:
             self.raw(f'<rect x="{x + middle - 12}" y="{y - 6}" width="24" height="12" class="{style}"/>')
 
     def __str__(self):
+        rules = RULES + self.rules + "\n"
         head = [
             f'<svg xmlns="http://www.w3.org/2000/svg" width="{self.width}" height="{self.height}" '
             f'viewBox="0 0 {self.width} {self.height}" role="img" aria-labelledby="title desc">',
             f'<title id="title">{escape(self.title)}</title>',
             f'<desc id="desc">{escape(self.description)}</desc>',
             "<!-- made by docs/pictures/draw.py: change that, not this -->",
-            f"<style>svg{{{variables(LIGHT)}}}",
-            f"@media(prefers-color-scheme:dark){{svg{{{variables(DARK)}}}}}{RULES}{self.rules}</style>",
+            f"<style>{coloured(rules, LIGHT)}@media(prefers-color-scheme:dark){{{in_dark(rules)}}}</style>",
             f'<rect x="0.5" y="0.5" width="{self.width - 1}" height="{self.height - 1}" rx="12" class="card"/>',
         ]
         return "\n".join([*head, *self.parts, "</svg>"]) + "\n"
