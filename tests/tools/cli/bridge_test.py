@@ -13,7 +13,7 @@ import unittest
 
 from driver import CLI, GUARD, ON_SOCKETCAN, main
 
-sys.path.append(os.path.join(os.path.dirname(__file__), "..", "roio_sim"))
+sys.path.append(os.path.join(os.path.dirname(__file__), "..", "sim"))
 from sim_driver import Lines, Sim, SimTest  # noqa: E402
 
 IMAGES = os.environ["ROIO_SIM_IMAGES"]
