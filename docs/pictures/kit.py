@@ -8,7 +8,7 @@ import re
 from xml.sax.saxutils import escape
 
 # One accent colour; everything else is grey. Each text colour has a contrast of 4.5 : 1 or more on every
-# ground that text may stand on (tests/docs/pictures_test.py computes it).
+# ground that text may stand on (tests/system/docs/pictures_test.py computes it).
 LIGHT = {"card": "#ffffff", "fill": "#f1f4f7", "tint": "#e3effc", "edge": "#c3ccd6",
          "ink": "#1b2027", "muted": "#525d6a", "accent": "#0a5fbe"}
 DARK = {"card": "#14181d", "fill": "#20262e", "tint": "#17304d", "edge": "#46515d",

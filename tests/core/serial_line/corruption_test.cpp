@@ -31,7 +31,7 @@ using Event = RecordReader::Event;
 /// scripts/soak asks for more.
 std::uint64_t record_count() {
   const char* const given = std::getenv("ROIO_SOAK_RECORDS");
-  constexpr std::uint64_t usual = is_instrumented ? 1'000'000 : 10'000'000;
+  constexpr std::uint64_t usual = is_instrumented ? 1'000'000 : 3'000'000;
   return given != nullptr ? std::strtoull(given, nullptr, 10) : usual;
 }
 
@@ -295,10 +295,11 @@ TEST(Corruption, ACheckOf16BitsIsNotEnough) {
   proof.print();
   EXPECT_EQ(proof.wrong(), 0U);
   EXPECT_EQ(proof.missed(), 0U);
-  Proof<CheckedBy16> by_16(Mix::noise, random);
+  // With one seed for all: few records that are wrong may be none by chance.
+  Proof<CheckedBy16> by_16(Mix::noise, std::mt19937(16));
   by_16.run(record_count());
   by_16.print();
-  EXPECT_GE(by_16.wrong(), by_16.refused() / 65'536 / 16) << "far from one in 65,536";
+  EXPECT_GT(by_16.wrong(), by_16.refused() / 65'536 / 16) << "far from one in 65,536";
 }
 
 }  // namespace

@@ -18,7 +18,7 @@ namespace {
 /// Simulated seconds; scripts/soak asks for an hour.
 std::int64_t soak_seconds() {
   const char* const given = std::getenv("ROIO_SOAK_SECONDS");
-  constexpr std::int64_t usual = is_instrumented ? 10 : 120;
+  constexpr std::int64_t usual = is_instrumented ? 10 : 30;
   return given != nullptr ? std::strtoll(given, nullptr, 10) : usual;
 }
 

@@ -4,12 +4,13 @@
 #include "rig.hpp"
 #include "sanitizers.hpp"
 #include "seed.hpp"
+#include "soak.hpp"
 
 namespace roio::test {
 namespace {
 
-// A million for the four drivers below.
-constexpr std::uint32_t frames_each = is_instrumented ? 20'000 : 250'000;
+// In scripts/soak a million for the four drivers below.
+const std::uint32_t frames_each = is_soak() ? 250'000 : is_instrumented ? 20'000 : 50'000;
 
 /// Keeps the bus at 100 %: frames of 0 to 8 bytes, to the node and to everybody in its subnet,
 /// mixed.

@@ -2,12 +2,13 @@
 """Takes one rule of the driver away, and sees tests/firmware/driver fail.
 
   mutate.py --list          the names of the mutations
+  mutate.py --prepare       compiles in advance what no mutation changes
   mutate.py NAME            compiles the tests against the driver without that rule, and runs them
 
 Exit status 0 when exactly the tests that the mutation names noticed (and perhaps others of their file),
 1 when one of them did not, 2 when the mutation does not fit the driver any more.
-In the environment: SOURCE, WORK (a folder of its own), CXX, LAUNCHER (may be empty), SIM (the simulator's
-library).
+In the environment: SOURCE, WORK (a folder in which each mutation has one of its own), CXX, LAUNCHER (may
+be empty), SIM (the simulator's libraries).
 """
 
 import os
@@ -17,6 +18,25 @@ import shlex
 import subprocess
 import sys
 
+# All that the tests include but for the driver. Not optimised: a mutation is compiled for a few runs.
+PRECOMPILED = """\
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <functional>
+#include <optional>
+#include <ostream>
+#include <random>
+#include <roio/frame_length.hpp>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "sanitizers.hpp"
+#include "seed.hpp"
+"""
+FLAGS = ["-std=c++20", "-O0"]
 RECEIVE = "receive_order_test.cpp"
 TRANSMIT = "transmit_order_test.cpp"
 OTHER = "receive_test.cpp"
@@ -202,15 +222,30 @@ def write_mutated_headers(source, work, old, new):
         fail(2, f"expected once in {headers}, found {found} times:\n{old}")
 
 
-def compile_tests(source, work, test_file):
-    program = work / "mutated_test"
-    include = [work / "include", source / "libroio/core/include", source / "sim/include",
-               source / "tests/support", source / "tests/firmware/driver"]
-    flags = ["-std=c++20", "-O1", *(f"-I{folder}" for folder in include)]
+def compile_with_launcher(*arguments):
     launcher = shlex.split(os.environ.get("LAUNCHER", ""))
-    compiled = work / "mutated_test.o"
-    subprocess.run([*launcher, os.environ["CXX"], *flags, "-c", source / "tests/firmware/driver" / test_file,
-                    "-o", compiled], check=True)
+    # What ccache wants to be told before it looks at something precompiled.
+    environment = dict(os.environ, CCACHE_SLOPPINESS="pch_defines,time_macros")
+    subprocess.run([*launcher, os.environ["CXX"], *FLAGS, *arguments], check=True, env=environment)
+
+
+def includes(source):
+    return [f"-I{source / folder}" for folder in (
+        "libroio/core/include", "sim/include", "tests/support", "tests/firmware/driver")]
+
+
+def prepare(source, work):
+    work.mkdir(parents=True, exist_ok=True)
+    header = work / "precompiled.hpp"
+    header.write_text(PRECOMPILED)
+    compile_with_launcher(*includes(source), "-x", "c++-header", header, "-o", f"{header}.gch")
+
+
+def compile_tests(source, work, folder, test_file):
+    program = folder / "mutated_test"
+    compiled = folder / "mutated_test.o"
+    compile_with_launcher("-include", work / "precompiled.hpp", f"-I{folder / 'include'}", *includes(source),
+                          "-c", source / "tests/firmware/driver" / test_file, "-o", compiled)
     subprocess.run([os.environ["CXX"], compiled, *os.environ["SIM"].split(":"), "-lgtest", "-lgtest_main",
                     "-lpthread", "-o", program], check=True)
     return program
@@ -237,12 +272,16 @@ def main():
     if sys.argv[1:] == ["--list"]:
         print(";".join(MUTATIONS), end="")
         return 0
-    if len(sys.argv) != 2 or sys.argv[1] not in MUTATIONS:
-        fail(2, "expected --list or the name of a mutation")
-    what, old, new, test_file, tests = MUTATIONS[sys.argv[1]]
     source, work = pathlib.Path(os.environ["SOURCE"]), pathlib.Path(os.environ["WORK"])
-    write_mutated_headers(source, work, old, new)
-    program = compile_tests(source, work, test_file)
+    if sys.argv[1:] == ["--prepare"]:
+        prepare(source, work)
+        return 0
+    if len(sys.argv) != 2 or sys.argv[1] not in MUTATIONS:
+        fail(2, "expected --list, --prepare or the name of a mutation")
+    what, old, new, test_file, tests = MUTATIONS[sys.argv[1]]
+    folder = work / sys.argv[1]
+    write_mutated_headers(source, folder, old, new)
+    program = compile_tests(source, work, folder, test_file)
     failed = failing_tests(program, tests)
     for test in tests:
         print(f"a driver that does not {what}: {test} {'fails' if test in failed else 'DOES NOT NOTICE'}")

@@ -111,6 +111,18 @@ TEST_P(FullQueue, SendEndsAtItsDeadlineAndTellsHowFarItCame) {
   EXPECT_GE(statistics.send_waits, 1U);
 }
 
+// A process may find its deadline past before it has begun to wait: with a nanosecond it always
+// does.
+TEST_P(FullQueue, AWaitIsCountedHoweverLateTheProcessIs) {
+  const auto sender = join();
+  const auto receiver = join();
+  const Transfer transfer = sender->send(too_many(), std::chrono::nanoseconds(1));
+  EXPECT_EQ(transfer.result, Result::timeout);
+  EXPECT_GE(sender->statistics().send_waits, 1U);
+  EXPECT_EQ(sender->statistics().send_timeouts, 1U);
+  EXPECT_EQ(receive_exactly(*receiver, transfer.count).size(), transfer.count);
+}
+
 TEST_P(FullQueue, WithoutWaitTakesWhatFits) {
   const auto sender = join();
   const auto receiver = join();

@@ -134,6 +134,17 @@ TEST_F(SocketCanBus, AQueueThatStaysFullEndsACallAtItsDeadline) {
   kernel_.answer_sends_with(std::vector<FakeAnswer>(100000, FakeAnswer{ENOBUFS}));
   EXPECT_EQ(bus->send(frames(1)[0], std::chrono::milliseconds(30)), Result::timeout);
   EXPECT_EQ(bus->statistics().send_waits, 1U);
+  EXPECT_EQ(bus->statistics().send_timeouts, 1U);
+}
+
+// A process may find its deadline past before it has begun to wait: with a nanosecond it always
+// does.
+TEST_F(SocketCanBus, AWaitIsCountedHoweverLateTheProcessIs) {
+  const auto bus = open("can0");
+  kernel_.answer_sends_with({{ENOBUFS}, {ENOBUFS}, {ENOBUFS}});
+  EXPECT_EQ(bus->send(frames(1)[0], std::chrono::nanoseconds(1)), Result::timeout);
+  EXPECT_EQ(bus->statistics().send_waits, 1U);
+  EXPECT_EQ(bus->statistics().send_timeouts, 1U);
 }
 
 TEST_F(SocketCanBus, ErrorsThatShouldNotBeAreThrownWithTheInterfacesName) {

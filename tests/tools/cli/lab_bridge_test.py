@@ -12,7 +12,7 @@ import termios
 import time
 
 from bridge_test import BridgeTest
-from driver import CliTest, main
+from driver import SLOWER, CliTest, main
 from lab_can_utils_test import Peer, frames, run
 
 # Frames of every kind and length, all normal: an urgent one may pass them.
@@ -105,9 +105,9 @@ class AttachTest(BridgeTest):
         while behind.process.poll() is None:
             run("cansend", "vcan0", "1000600A#03")
             tries += 1
-            time.sleep(0.2)
+            time.sleep(0.2 * SLOWER)
         status = behind.result()[0]
-        time.sleep(2)  # for the last one to be handed on
+        time.sleep(2 * SLOWER)  # for the last one to be handed on
         err = attach.result()[2]
         self.assertEqual(status, 0, err)
         counts = re.search(

@@ -40,6 +40,10 @@ Transfer Transmitter::send(std::span<const Frame> frames, Timeout timeout) {
   Result woken = Result::ok;
   // Room that came together with the end of the wait is used all the same.
   while (obstacle != Obstacle::none && woken == Result::ok) {
+    // What is counted goes by what was asked for, not by how late this process is by now.
+    if (timeout > no_wait && obstacle != Obstacle::unusable) {
+      count_wait();
+    }
     woken = wait(obstacle, deadline);
     obstacle = woken == Result::closed ? obstacle : offer(frames, count);
     woken = woken == Result::ok && deadline.passed() ? Result::timeout : woken;
@@ -100,15 +104,18 @@ Transmitter::Obstacle Transmitter::offer_batch(std::span<const Frame> frames, st
   }
 }
 
+void Transmitter::count_wait() {
+  if (!wait_is_counted_) {
+    waits_counted_.fetch_add(1, std::memory_order_relaxed);
+    wait_is_counted_ = true;
+  }
+}
+
 Result Transmitter::wait(Obstacle obstacle, const Deadline& deadline) {
   if (obstacle == Obstacle::unusable) {
     const Result woken = pause(between_looks, deadline);
     link_.look();
     return woken;
-  }
-  if (!wait_is_counted_ && !deadline.passed()) {
-    waits_counted_.fetch_add(1, std::memory_order_relaxed);
-    wait_is_counted_ = true;
   }
   if (obstacle == Obstacle::socket_full) {
     return waits_.wait({link_.socket(), POLLOUT}, deadline.remaining());

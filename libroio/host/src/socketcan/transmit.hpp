@@ -44,6 +44,7 @@ class Transmitter {
   [[nodiscard]] Obstacle offer(std::span<const Frame> frames, std::size_t& count);
   /// Offers at most a batch; adds those that were taken. none: offer the rest.
   [[nodiscard]] Obstacle offer_batch(std::span<const Frame> frames, std::size_t& taken);
+  void count_wait();
   /// Waits until trying again makes sense (ok), or must not be done.
   [[nodiscard]] Result wait(Obstacle obstacle, const Deadline& deadline);
   [[nodiscard]] Result pause(Timeout length, const Deadline& deadline);

@@ -56,6 +56,8 @@ template <typename Offer, typename Count>
 Transfer send_queued(const Waits& waits, const EventFlag& sendable, std::span<const Frame> frames,
                      Timeout timeout, const Offer& offer, const Count& count) {
   const Deadline deadline(timeout);
+  // Once at least, however late this process may be by now: what is counted goes by what was asked.
+  bool may_wait = timeout > no_wait;
   std::size_t sent = 0;
   for (;;) {
     const std::optional<std::size_t> accepted = offer(frames.subspan(sent));
@@ -69,12 +71,12 @@ Transfer send_queued(const Waits& waits, const EventFlag& sendable, std::span<co
     if (waits.is_cancelled()) {
       return {Result::cancelled, sent};
     }
-    const bool gives_up = deadline.passed();
-    count(gives_up);
-    if (gives_up) {
+    count(!may_wait);
+    if (!may_wait) {
       return {Result::timeout, sent};
     }
     static_cast<void>(waits.wait({sendable.fd(), POLLIN}, deadline.remaining()));
+    may_wait = !deadline.passed();
   }
 }
 
