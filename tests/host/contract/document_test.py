@@ -9,7 +9,7 @@ from pathlib import Path
 
 source = Path(sys.argv[1])
 text = (source / "docs/backend.md").read_text()
-shown = re.findall(r"\]\(\.\./\.\./(examples/backend/[\w.]+)\):\n\n```\w+\n(.*?)```\n", text, re.DOTALL)
+shown = re.findall(r"\]\(\.\./(examples/backend/[\w.]+)\):\n\n```\w+\n(.*?)```\n", text, re.DOTALL)
 whole = set()
 for name, block in shown:
     code = (source / name).read_text()

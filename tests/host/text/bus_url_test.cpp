@@ -118,6 +118,10 @@ TEST(BusUrlText, InterfaceRefusedInWords) {
        R"("/dev/ttyACM0": a path is no interface; )"
        R"(expected serial:/dev/ttyACM0 for the bridge on that serial port)",
        0},
+      {"a port whose name is not fit to be shown", "/dev/\x1b[2J",
+       R"("/dev/\x1B[2J": a path is no interface; )"
+       R"(expected serial:DEVICE for the bridge on that serial port)",
+       0},
       {"a path", "can0/x", R"("can0/x": "/" is not allowed in an interface name)", 4},
       {"a space", "socketcan:can 0",
        R"("socketcan:can 0": " " is not allowed in an interface name)", 13},

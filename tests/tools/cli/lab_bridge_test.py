@@ -128,7 +128,7 @@ class AttachTest(BridgeTest):
         self.assertEqual(
             self.run_cli("bridge", "attach", self.port, "vcan7"),
             (2, "", "roio-cli: vcan7: no such network interface; `ip link add vcan7 type vcan; ip link "
-                    "set vcan7 up` makes a virtual one\n"))
+                    "set vcan7 up` makes a virtual one, and local:NAME needs none\n"))
 
     def test_not_a_can_interface(self):
         self.assertEqual(

@@ -309,8 +309,8 @@ class WrongBusTest(CliTest):
         self.assertEqual(
             self.run_cli("dump", "nosuch0"),
             (2, "",
-             "roio-cli: nosuch0: no such network interface; `ip link` lists them, and local:NAME "
-             "needs none\n"),
+             "roio-cli: nosuch0 (did you mean local:nosuch0?): no such network interface; `ip link` lists "
+             "them, and local:NAME needs none\n"),
         )
 
     def test_not_a_can_interface(self):

@@ -20,7 +20,8 @@ constexpr Timeout between_looks = std::chrono::milliseconds(50);
 
 }  // namespace
 
-Transmitter::Transmitter(Link& link, const Waits& waits) : link_(link), waits_(waits) {
+Transmitter::Transmitter(Link& link, const Waits& waits)
+    : link_(link), waits_(waits), back_off_(first_back_off) {
   for (std::size_t i = 0; i < batch_size; ++i) {
     vectors_[i] = {&frames_[i], sizeof frames_[i]};
     messages_[i].msg_hdr.msg_iov = &vectors_[i];

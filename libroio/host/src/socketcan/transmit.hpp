@@ -54,7 +54,7 @@ class Transmitter {
   std::array<can_frame, batch_size> frames_{};
   std::array<iovec, batch_size> vectors_{};
   std::array<mmsghdr, batch_size> messages_{};
-  Timeout back_off_{};            // the next pause while an interface's queue is full
+  Timeout back_off_;              // the next pause while an interface's queue is full
   bool wait_is_counted_ = false;  // several pauses for one frame are one wait
   std::atomic<std::uint64_t> sent_{0};
   std::atomic<std::uint64_t> waits_counted_{0};

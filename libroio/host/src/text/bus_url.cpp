@@ -47,7 +47,11 @@ Parsed<BusUrl> read_socketcan(Part part) {
   const auto [target, options] = split_options(part);
   const std::string_view name = target.text;
   if (name.starts_with('/')) {
-    return ParseError{"a path is no interface; expected serial:" + std::string(name) +
+    const bool is_plain = std::all_of(name.begin(), name.end(), [](char character) {
+      return character > ' ' && character <= '~';
+    });
+    return ParseError{"a path is no interface; expected serial:" +
+                          (is_plain ? std::string(name) : std::string("DEVICE")) +
                           " for the bridge on that serial port",
                       target.offset};
   }
