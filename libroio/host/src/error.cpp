@@ -32,7 +32,7 @@ class Category final : public std::error_category {
       case Errc::bad_frame:
         return "no frame that a CAN bus carries";
       case Errc::not_connected:
-        return "no hub answered, and none could be started, in time";
+        return "nobody carries it, or not in time";
       case Errc::no_such_port:
         return "no such serial port; `ls /dev/ttyACM* /dev/ttyUSB*` lists those that are plugged "
                "in, and serial:auto finds a bridge among them";

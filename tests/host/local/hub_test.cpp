@@ -68,6 +68,30 @@ bool becomes(const Bus& bus, std::size_t listeners) {
   return false;
 }
 
+TEST(LocalBus, WhoOnlyJoinsCarriesItForNobody) {
+  const std::string name = "local:" + unique_name();
+  const OpenOptions joining{.open_timeout = 50ms, .join_only = true};
+  try {
+    const auto bus = open(name, joining);
+    ADD_FAILURE() << "it opened though nobody carries the bus";
+  } catch (const std::system_error& error) {
+    EXPECT_EQ(error.code(), make_error_code(Errc::not_connected)) << error.what();
+  }
+  auto carrier = open(name);
+  const auto joined = open(name, {.open_timeout = 30s, .join_only = true});
+  EXPECT_TRUE(becomes(*carrier, 1));
+  carrier.reset();
+  for (int tries = 0; tries < 30000 && joined->state() != BusState::absent; ++tries) {
+    std::this_thread::sleep_for(1ms);
+  }
+  EXPECT_EQ(joined->state(), BusState::absent) << "it has not taken the bus over";
+  const auto next = open(name);
+  EXPECT_TRUE(becomes(*next, 1)) << "it has come to the next one";
+  ASSERT_EQ(joined->send(Frame{0x1000400A, FrameKind::extended, 0, {}}, 30s), Result::ok);
+  Received received{};
+  EXPECT_EQ(next->receive(received, 30s), Result::ok);
+}
+
 TEST(LocalBus, TellsHowManyOthersListen) {
   const std::string name = "local:" + unique_name();
   const auto sender = open(name, {.send_only = true});

@@ -77,6 +77,15 @@ class NobodyTest(CliTest):
         self.assertEqual(self.run_cli("send", BUS, "0.2", "01"), (0, "", self.ALONE + "1 message\n"))
         other.communicate(timeout=GUARD)
 
+    def test_who_waits_leaves_the_bus_to_the_listener(self):
+        """Else the listener looks for another bus just when the next one sends."""
+        for _ in range(20):
+            listener = subprocess.Popen([CLI, "dump", "-n", "2", BUS], stdout=subprocess.PIPE, text=True)
+            self.assertEqual(self.run_cli("send", "--wait", BUS, "0.2", "01"), (0, "", ""))
+            self.assertEqual(self.run_cli("send", BUS, "0.2", "02"), (0, "", ""))
+            out, _ = listener.communicate(timeout=GUARD)
+            self.assertEqual([line[-2:] for line in out.splitlines()], ["01", "02"])
+
     def test_wait_ends_with_the_first_who_listens(self):
         sender = subprocess.Popen([CLI, "send", "--wait=600000", BUS, "0.2", "01"],
                                   stderr=subprocess.PIPE, text=True)

@@ -3,6 +3,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <roio/error.hpp>
 #include <roio/text.hpp>
 #include <span>
 #include <vector>
@@ -24,15 +25,39 @@ constexpr std::chrono::milliseconds look_every{5};
 // So many lines are named one by one; who pipes in what is no log at all wants no more of them.
 constexpr std::uint64_t max_named_lines = 10;
 
+[[noreturn]] void fail_for_want_of_listeners(const SendOptions& options) {
+  throw Failure(options.bus + ": nobody came to listen within " +
+                std::to_string(options.wait->count()) + " ms; nothing was sent");
+}
+
+/// Who waits for a listener leaves the bus to it: a program that carries the bus, sends and is gone
+/// would have the listener look for another one just then.
+std::unique_ptr<Bus> open_bus(const SendOptions& options) {
+  OpenOptions open_options;
+  open_options.send_only = true;
+  if (!options.wait) {
+    return open_until_signal(options.bus, open_options);
+  }
+  open_options.join_only = true;
+  open_options.open_timeout = *options.wait;
+  try {
+    return open_until_signal(options.bus, open_options);
+  } catch (const std::system_error& error) {
+    if (error.code() == Errc::not_connected) {
+      fail_for_want_of_listeners(options);
+    }
+    throw;
+  }
+}
+
 /// @return false when a signal came first.
 /// @throws Failure: nobody came.
-bool wait_for_listener(const Bus& bus, std::chrono::milliseconds time) {
-  const auto end = std::chrono::steady_clock::now() + time;
+bool wait_for_listener(const SendOptions& options, const Bus& bus,
+                       std::chrono::steady_clock::time_point end) {
   while (bus.listeners().value_or(0) == 0) {
     const auto now = std::chrono::steady_clock::now();
     if (now >= end) {
-      throw Failure(bus.name() + ": nobody came to listen within " + std::to_string(time.count()) +
-                    " ms; nothing was sent");
+      fail_for_want_of_listeners(options);
     }
     if (!Interrupt::sleep_until(std::min(now + look_every, end))) {
       return false;
@@ -225,13 +250,13 @@ int finish(const SendOptions& options, const Sender& sender, const Unsent& unsen
 }  // namespace
 
 int send(const SendOptions& options) {
-  OpenOptions open_options;
-  open_options.send_only = true;
-  const auto bus = open_until_signal(options.bus, open_options);
+  const auto end =
+      std::chrono::steady_clock::now() + options.wait.value_or(std::chrono::milliseconds(0));
+  const auto bus = open_bus(options);
   const CancelOnSignal cancel_on_signal(*bus);
   Sender sender(options, *bus);
   Unsent unsent;
-  if (options.wait && !wait_for_listener(*bus, *options.wait)) {
+  if (options.wait && !wait_for_listener(options, *bus, end)) {
     return finish(options, sender, unsent);
   }
   if (options.frame) {

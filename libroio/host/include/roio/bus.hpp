@@ -93,6 +93,10 @@ struct OpenOptions {
   /// How long open() may wait for the bus (a hub that is just starting or leaving, a board that is
   /// reset when its port is opened).
   Timeout open_timeout = std::chrono::seconds(5);
+  /// A local bus: be there only while another program carries it, and never carry it for others.
+  /// open() waits for such a program, and throws Errc::not_connected when none comes in time; the
+  /// bus is absent while there is none. For programs that come and go. Others take no notice.
+  bool join_only = false;
 };
 
 class ROIO_EXPORT Bus {

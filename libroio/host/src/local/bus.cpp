@@ -37,7 +37,7 @@ class LocalBus final : public Bus {
  public:
   LocalBus(const std::string& bus_name, std::optional<std::uint32_t> bitrate_bps,
            const OpenOptions& options)
-      : name_("local:" + bus_name), connector_(bus_name, bitrate_bps) {
+      : name_("local:" + bus_name), connector_(bus_name, bitrate_bps, !options.join_only) {
     if (!options.send_only) {
       filters_ = {SocketCanFilter{0, 0}};
     }

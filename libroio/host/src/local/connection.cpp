@@ -36,8 +36,13 @@ milliseconds at_most(milliseconds limit, const Deadline& deadline) {
 
 }  // namespace
 
-Connector::Connector(const std::string& bus_name, std::optional<std::uint32_t> bitrate_bps)
-    : bus_name_(bus_name), bitrate_bps_(bitrate_bps), client_(random_client()), place_(bus_name) {}
+Connector::Connector(const std::string& bus_name, std::optional<std::uint32_t> bitrate_bps,
+                     bool may_be_hub)
+    : bus_name_(bus_name),
+      bitrate_bps_(bitrate_bps),
+      may_be_hub_(may_be_hub),
+      client_(random_client()),
+      place_(bus_name) {}
 
 std::optional<Connection> Connector::connect(const Deadline& deadline, const EventFlag& stop) {
   for (milliseconds pause = first_pause; !stop.is_set();
@@ -46,7 +51,7 @@ std::optional<Connection> Connector::connect(const Deadline& deadline, const Eve
       if (auto connection = greet(std::move(socket), deadline, stop)) {
         return connection;
       }
-    } else if (auto seat = place_.claim()) {
+    } else if (auto seat = may_be_hub_ ? place_.claim() : std::nullopt) {
       hub_ = std::make_unique<Hub>(std::move(*seat), bitrate_bps_);
       continue;
     }

@@ -21,13 +21,15 @@ struct Connection {
   Welcome welcome;
 };
 
-/// Gets a client to a bus's hub, whichever process that is, and starts one here when there is none.
+/// Gets a client to a bus's hub, whichever process that is, and starts one here when there is none
+/// and this process may.
 class Connector {
  public:
   /// @param bitrate_bps what the bus must run at; none: whatever it does, and no limit for a hub
   /// here.
+  /// @param may_be_hub else only other processes are.
   /// @throws std::system_error: see Place.
-  Connector(const std::string& bus_name, std::optional<std::uint32_t> bitrate_bps);
+  Connector(const std::string& bus_name, std::optional<std::uint32_t> bitrate_bps, bool may_be_hub);
 
   /// @param stop gives up when it is set.
   /// @return none: not before the deadline, or stopped.
@@ -43,6 +45,7 @@ class Connector {
 
   std::string bus_name_;
   std::optional<std::uint32_t> bitrate_bps_;
+  const bool may_be_hub_;
   bool was_connected_ = false;
   std::uint64_t client_;
   Place place_;
