@@ -11,6 +11,7 @@ import shutil
 import subprocess
 import tempfile
 import threading
+import time
 import unittest
 
 CLI = os.environ["ROIO_CLI"]
@@ -26,6 +27,21 @@ def masked(text):
     """The text with every time in it replaced, by as many digits as it had before its point."""
     text = re.sub(r"\((\d+)\.\d{6}\)", lambda m: "(" + "0" * len(m[1]) + ".000000)", text)
     return re.sub(r'"timestamp":\d+(\.\d+)?', '"timestamp":0', text)
+
+
+def wait_until(condition):
+    deadline = time.monotonic() + GUARD
+    while not condition():
+        if time.monotonic() > deadline:
+            raise AssertionError("waited in vain")
+        time.sleep(0.01)
+
+
+def catches(process, number):
+    """Whether a process has a handler for a signal."""
+    with open(f"/proc/{process.pid}/status") as status:
+        caught = int(re.search(r"SigCgt:\s*(\w+)", status.read())[1], 16)
+    return bool(caught >> (number - 1) & 1)
 
 
 class Dump:

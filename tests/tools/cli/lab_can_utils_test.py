@@ -8,7 +8,7 @@ import signal
 import subprocess
 import time
 
-from driver import CLI, GUARD, CliTest, main
+from driver import CLI, GUARD, CliTest, catches, main, wait_until
 
 
 def run(*command, stdin=None):
@@ -25,21 +25,6 @@ def receivers(interface):
         with open(name) as table:
             count += sum(line.split()[:1] == [interface] for line in table)
     return count
-
-
-def wait_until(condition):
-    deadline = time.monotonic() + GUARD
-    while not condition():
-        if time.monotonic() > deadline:
-            raise AssertionError("waited in vain")
-        time.sleep(0.01)
-
-
-def catches(process, number):
-    """Whether a process has a handler for a signal."""
-    with open(f"/proc/{process.pid}/status") as status:
-        caught = int(re.search(r"SigCgt:\s*(\w+)", status.read())[1], 16)
-    return bool(caught >> (number - 1) & 1)
 
 
 def is_asleep(process):

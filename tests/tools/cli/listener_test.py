@@ -8,7 +8,7 @@ import signal
 import subprocess
 import time
 
-from driver import CLI, GUARD, CliTest, main
+from driver import CLI, GUARD, CliTest, catches, main, wait_until
 
 BUS = "local:robot"
 
@@ -102,8 +102,7 @@ class NobodyTest(CliTest):
     def test_a_signal_ends_the_wait(self):
         sender = subprocess.Popen([CLI, "send", "--wait", BUS, "0.2", "01"],
                                   stderr=subprocess.PIPE, text=True)
-        while BUS not in self.run_cli("buses", env=dict(os.environ, ROIO_SERIAL_PORTS=""))[1]:
-            time.sleep(0.01)
+        wait_until(lambda: catches(sender, signal.SIGINT))
         sender.send_signal(signal.SIGINT)
         self.assertEqual(sender.communicate(timeout=GUARD)[1].replace(
             "roio-cli: local:robot: 0 messages sent\n", ""), "")
