@@ -101,6 +101,8 @@ bool Interrupt::wait_readable(int fd) {
 std::unique_ptr<Bus> open_until_signal(const std::string& url, const OpenOptions& options) {
   struct Opening {
     Opening() { opening = true; }
+    Opening(const Opening&) = delete;
+    Opening& operator=(const Opening&) = delete;
     ~Opening() { opening = false; }
   } const now;
   if (caught != 0) {
