@@ -23,7 +23,7 @@ COLUMNS, ROWS = 100, 30
 
 
 def stable(line):
-    line = re.sub(r"/\S*/tmp\.\w+\.ttyACM0", "/tmp/demo.ttyACM0", line)
+    line = re.sub(r"/\S*/roio-demo\.\w+/ttyACM0", "/tmp/demo.ttyACM0", line)
     return re.sub(r"local:demo-\d+", "local:demo", line)
 
 
