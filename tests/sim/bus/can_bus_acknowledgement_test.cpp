@@ -1,38 +1,15 @@
 // Who acknowledges a frame, and what becomes of a node whose frames nobody does.
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <memory>
-#include <roio/frame_length.hpp>
 #include <roio/sim/can_bus.hpp>
-#include <stdexcept>
-#include <string>
 #include <vector>
 
-#include "station.hpp"
-#include "vectors.hpp"
+#include "can_bus_rig.hpp"
 
 namespace roio::sim {
 namespace {
 
 using std::chrono::milliseconds;
-using test::Station;
-using test::text_of;
-using Texts = std::vector<std::string>;
-
-constexpr std::uint32_t rate = 500'000;
-const SimTime bit = cycles(1, rate);
-const Frame document_frame{0x1000400A, FrameKind::extended, 3, {0x5A, 0x2D, 0x00}};
-
-Frame extended(std::uint32_t id, std::uint8_t data = 0) {
-  return {id, FrameKind::extended, 1, {data}};
-}
-
-/// One frame after the other from one station, as many as there is time for.
-void send_without_end(Station& station, const Frame& frame) {
-  station.node.on_sent([&station, frame](const Frame&) { station.node.send(frame); });
-  station.node.send(frame);
-}
 
 TEST(CanBus, ALoneNodeRetriesBecomesErrorPassiveAndNeverBusOff) {
   CanBus bus;
