@@ -33,6 +33,10 @@ class Category final : public std::error_category {
         return "no frame that a CAN bus carries";
       case Errc::not_connected:
         return "nobody carries it, or not in time";
+      case Errc::carrier_stopped:
+        return "it carries the bus and has been stopped; `fg` or `kill -CONT` lets it go on";
+      case Errc::bus_full:
+        return "256 programs are on the bus, as many as it takes";
       case Errc::no_such_port:
         return "no such serial port; `ls /dev/ttyACM* /dev/ttyUSB*` lists those that are plugged "
                "in, and serial:auto finds a bridge among them";

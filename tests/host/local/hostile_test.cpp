@@ -7,8 +7,12 @@
 #include <roio.hpp>
 #include <thread>
 
+#include "local/log.hpp"
 #include "local/place.hpp"
+#include "local/presence.hpp"
 #include "local/protocol.hpp"
+#include "local/slot_filters.hpp"
+#include "local/stream.hpp"
 #include "process.hpp"
 
 namespace roio::local {
@@ -39,9 +43,11 @@ bool is_cut_off(const UniqueFd& socket) {
   }
 }
 
+constexpr std::uint64_t some_client = 4711;
+
 Buffer hello() {
   Buffer bytes;
-  append_record(bytes, Hello{magic, protocol_version, 0, 4711, 0, 0});
+  append_record(bytes, Hello{magic, protocol_version, 0, some_client, 0, 0});
   return bytes;
 }
 
@@ -60,8 +66,9 @@ class HostileClient : public ::testing::Test {
   std::string name_ = unique_name();
   std::unique_ptr<Bus> receiver_ = open("local:" + name_);
   std::unique_ptr<Bus> sender_ = open("local:" + name_, {.send_only = true});
-  Place place_{name_};
-  UniqueFd socket_ = place_.connect();
+  Place::Hub hub_ = Place(name_).find().value();
+  Presence presence_{hub_.lock_path, some_client};
+  UniqueFd socket_ = std::move(hub_.socket);
 };
 
 TEST_F(HostileClient, GarbageInsteadOfAGreetingIsCutOff) {
@@ -115,17 +122,49 @@ TEST_F(HostileClient, AFrameThatNoBusCarriesIsCutOff) {
   expect_others_unharmed();
 }
 
-TEST_F(HostileClient, ConsumingMoreThanWasDeliveredIsCutOff) {
-  Buffer bytes = hello();
-  append_record(bytes, Consumed{1});
-  send_raw(socket_, bytes);
+TEST_F(HostileClient, WhoDoesNotShowThatItIsAliveIsCutOff) {
+  presence_.end();
+  send_raw(socket_, hello());
   EXPECT_TRUE(is_cut_off(socket_));
+  expect_others_unharmed();
+}
+
+TEST_F(HostileClient, APlaceOutOfRangeHarmsNobodyElse) {
+  send_raw(socket_, hello());
+  std::array<std::uint8_t, sizeof(RecordHead) + sizeof(Welcome)> answer{};
+  UniqueFd wake;
+  pollfd entry{socket_.get(), POLLIN, 0};
+  ASSERT_EQ(::poll(&entry, 1, 30'000), 1);
+  ASSERT_EQ(receive_with_fd(socket_.get(), answer, wake), answer.size());
+  std::span<const std::uint8_t> rest = answer;
+  Record record{};
+  ASSERT_EQ(take_record(rest, record), Split::record);
+  const ClientMemory memory(presence_.fd(), record.as<Welcome>().slot);
+  Slot& slot = memory.slot();
+  publish_filters(slot, std::array{SocketCanFilter{0, 0}});
+  for (const std::uint64_t next : {UINT64_C(0), (UINT64_C(1) << 48) - 1}) {
+    slot.position = pack({next, 77});
+    slot.filter_version = 3;  // for ever changing
+    slot.filter_count = 100'000;
+    slot.sleeping = 1;
+    slot.queued = UINT64_MAX;
+    const std::vector<Frame> lot(1000, some_frame);
+    for (std::uint64_t sent = 0; sent < log_size + 2000; sent += lot.size()) {
+      ASSERT_EQ(sender_->send(lot, 30s).result, Result::ok);
+      std::array<Received, 1000> received;
+      for (std::size_t got = 0; got < lot.size();) {
+        const Transfer transfer = receiver_->receive(received, 30s);
+        ASSERT_EQ(transfer.result, Result::ok);
+        got += transfer.count;
+      }
+    }
+  }
   expect_others_unharmed();
 }
 
 TEST_F(HostileClient, TheHubsOwnRecordsAreCutOff) {
   Buffer bytes = hello();
-  append_record(bytes, Done{{1, 1}});
+  append_record(bytes, Refused{0, 0});
   send_raw(socket_, bytes);
   EXPECT_TRUE(is_cut_off(socket_));
   expect_others_unharmed();

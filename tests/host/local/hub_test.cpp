@@ -190,8 +190,9 @@ TEST(LocalBus, AFolderOpenToOthersIsRefused) {
   std::filesystem::create_directory(folder.path());
   std::filesystem::permissions(folder.path(), std::filesystem::perms::all);
   EXPECT_EQ(refusal("local:mine"), folder.path().string() +
-                                       ": expected a folder of this user's with mode 0700: local "
-                                       "buses are for one user alone");
+                                       ": expected a folder of this user's with mode 0700; "
+                                       "ROIO_RUNTIME_DIR can name another: local buses are for one "
+                                       "user alone");
 }
 
 TEST(LocalBus, AFolderThatIsALinkIsRefused) {

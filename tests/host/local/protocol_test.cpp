@@ -40,24 +40,6 @@ TEST(LocalRecords, EveryBeginningOfARecordIsIncompleteAndTakesNothing) {
   }
 }
 
-TEST(LocalRecords, FiltersFromNoneToTheMost) {
-  for (const std::size_t count : {std::size_t{0}, std::size_t{1}, max_filters}) {
-    const std::vector<SocketCanFilter> filters(count, SocketCanFilter{0x80000123, 0xC0000FFF});
-    Buffer bytes;
-    append_filters(bytes, filters);
-    EXPECT_LE(bytes.size(), max_record);
-    std::span<const std::uint8_t> rest = bytes;
-    Record record{};
-    ASSERT_EQ(take_record(rest, record), Split::record) << count;
-    const auto taken = filters_of(record);
-    ASSERT_EQ(taken.size(), count);
-    if (count > 0) {
-      EXPECT_EQ(taken.back().can_id, 0x80000123U);
-      EXPECT_EQ(taken.back().can_mask, 0xC0000FFFU);
-    }
-  }
-}
-
 struct MalformedHead {
   const char* why;
   RecordHead head;
@@ -66,14 +48,11 @@ struct MalformedHead {
 TEST(LocalRecords, MalformedHeadsAreRefusedBeforeTheirBodyIsWaitedFor) {
   const MalformedHead rows[] = {
       {"no such type", {0, static_cast<RecordType>(0), 0}},
-      {"one past the last type", {sizeof(Done), static_cast<RecordType>(9), 0}},
+      {"one past the last type", {sizeof(GoOn), static_cast<RecordType>(10), 0}},
+      {"a type of an older version", {0, static_cast<RecordType>(2), 0}},
       {"one byte short", {sizeof(OfferedFrame) - 1, RecordType::frame, 0}},
       {"one byte long", {sizeof(OfferedFrame) + 1, RecordType::frame, 0}},
       {"the spare byte set", {sizeof(OfferedFrame), RecordType::frame, 1}},
-      {"half a filter", {sizeof(SocketCanFilter) / 2, RecordType::filters, 0}},
-      {"a filter too many",
-       {static_cast<std::uint16_t>((max_filters + 1) * sizeof(SocketCanFilter)),
-        RecordType::filters, 0}},
   };
   for (const MalformedHead& row : rows) {
     Buffer bytes(sizeof(RecordHead));

@@ -8,7 +8,7 @@ namespace roio::fuzz {
 namespace {
 
 using local::Buffer;
-using local::Deliver;
+using local::Hello;
 using local::OfferedFrame;
 using local::Record;
 using local::RecordType;
@@ -16,12 +16,10 @@ using local::RecordType;
 // What a record says, written again, must be the very bytes that it was read from.
 Buffer written_again(const Record& record) {
   Buffer bytes;
-  if (record.type == RecordType::filters) {
-    local::append_filters(bytes, filters_of(record));
-  } else if (record.type == RecordType::frame) {
+  if (record.type == RecordType::frame) {
     append_record(bytes, record.as<OfferedFrame>());
-  } else if (record.type == RecordType::deliver) {
-    append_record(bytes, record.as<Deliver>());
+  } else if (record.type == RecordType::hello) {
+    append_record(bytes, record.as<Hello>());
   } else {
     local::detail::append(bytes, record.type, record.body);
   }

@@ -21,6 +21,8 @@ enum class Errc {
   too_many_filters,     ///< More filters than the backend takes.
   bad_frame,            ///< A frame that no bus carries: id, length or kind out of range.
   not_connected,        ///< The local bus could not be reached or taken over in time.
+  carrier_stopped,      ///< The program that carries the local bus has been stopped (Ctrl-Z).
+  bus_full,             ///< The local bus has as many programs as it takes.
   no_such_port,         ///< No serial port of that name.
   not_a_port,           ///< It exists and is no serial port.
   port_in_use,          ///< Another program has the serial port.

@@ -1,35 +1,35 @@
 #include "local/bus.hpp"
 
 #include <poll.h>
+#include <unistd.h>
 
-#include <algorithm>
 #include <array>
 #include <condition_variable>
-#include <deque>
-#include <limits>
 #include <mutex>
+#include <new>
 #include <roio/error.hpp>
 #include <roio/parts/frame_check.hpp>
 #include <roio/parts/queued_calls.hpp>
-#include <roio/parts/receive_queue.hpp>
 #include <roio/parts/thread.hpp>
 #include <thread>
 #include <utility>
 #include <vector>
 
 #include "local/connection.hpp"
-#include "local/senders.hpp"
+#include "local/inbox.hpp"
+#include "local/outbox.hpp"
 
 namespace roio {
 namespace local {
 namespace {
 
 constexpr std::chrono::seconds close_time{1};
-// Consumed frames are reported in lots, for it is a system call here and one in the hub.
-constexpr std::uint64_t consumed_lot = 512;
 constexpr std::chrono::milliseconds retry_interval{200};
-// A hub takes its clients' bytes within microseconds, unless it is stopped.
-constexpr std::chrono::seconds filter_time{1};
+
+std::vector<SocketCanFilter> first_filters(const OpenOptions& options) {
+  return options.send_only ? std::vector<SocketCanFilter>{}
+                           : std::vector<SocketCanFilter>{SocketCanFilter{0, 0}};
+}
 
 /// The client of a local bus. A thread of its own reads, so that frames, and a hub to be replaced,
 /// do not wait for the program to call.
@@ -37,13 +37,12 @@ class LocalBus final : public Bus {
  public:
   LocalBus(const std::string& bus_name, std::optional<std::uint32_t> bitrate_bps,
            const OpenOptions& options)
-      : name_("local:" + bus_name), connector_(bus_name, bitrate_bps, !options.join_only) {
-    if (!options.send_only) {
-      filters_ = {SocketCanFilter{0, 0}};
-    }
+      : name_("local:" + bus_name),
+        connector_(bus_name, bitrate_bps, !options.join_only),
+        inbox_(connector_.client(), first_filters(options)) {
     auto connection = connector_.connect(Deadline(options.open_timeout), stop_);
     if (!connection) {
-      throw std::system_error(Errc::not_connected, name_);
+      throw connector_.why_not();
     }
     adopt(std::move(*connection));
     thread_ = start_thread([this] { run(); });
@@ -58,7 +57,7 @@ class LocalBus final : public Bus {
   Transfer send(std::span<const Frame> frames, Timeout timeout) override;
   Transfer receive(std::span<Received> frames, Timeout timeout) override;
   void set_filters(std::span<const SocketCanFilter> filters) override;
-  [[nodiscard]] int fd() const noexcept override { return queue_.readable().fd(); }
+  [[nodiscard]] int fd() const noexcept override { return inbox_.readable().fd(); }
   [[nodiscard]] BusState state() const override;
   [[nodiscard]] Statistics statistics() const override;
   [[nodiscard]] std::optional<std::size_t> listeners() const override;
@@ -68,26 +67,29 @@ class LocalBus final : public Bus {
   [[nodiscard]] const std::string& name() const noexcept override { return name_; }
 
  private:
+  /// To the hub.
+  struct Link {
+    Stream stream;
+    UniqueFd wake;
+    pid_t hub;
+  };
+
   // The caller holds mutex_ for these.
-  std::size_t offer(std::span<const Frame> frames);
+  std::optional<std::size_t> offer(std::span<const Frame> frames);
   std::size_t take(std::span<Received> frames);
-  void report_consumed();
-  void flush();
   void adopt(Connection connection);
-  void offer_again();
-  void disconnect();
-  void fetch();
-  Stream::Read read();
-  bool handle(const Record& record);
-  bool take_delivery(const Deliver& deliver);
-  void take_done(const Done& done);
-  [[nodiscard]] std::size_t unacknowledged() const { return sent_[0].size() + sent_[1].size(); }
+  void settle();
+  void ask_for_done();
+  void flush();
+  void tell_if_waited_for();
 
   // The reading thread.
   void run();
-  void serve();
+  void work();
+  bool prepare_to_sleep();
+  void sleep();
+  void disconnect();
   void reconnect();
-  [[nodiscard]] bool wants_to_write() const;
 
   std::string name_;
   Connector connector_;  // by the constructor, then by the reading thread, then by close()
@@ -98,23 +100,11 @@ class LocalBus final : public Bus {
 
   mutable std::mutex mutex_;
   std::condition_variable all_done_;
-  std::condition_variable flushed_;  // or the connection is another, or none
-  std::optional<Connection> connection_;
-  std::uint64_t connection_number_ = 0;
-  bool over_ = false;  // the connection is, and the reading thread has not seen to it yet
-  std::vector<SocketCanFilter> filters_;
-  std::array<std::deque<OfferedFrame>, lane_count> sent_;  // not reported done yet
-  std::array<std::size_t, lane_count> offered_{};          // of sent_, to this hub
-  std::array<std::uint64_t, lane_count> sequence_{};
-  // The hub sees to it that it does not grow without end.
-  ReceiveQueue queue_{std::numeric_limits<std::size_t>::max()};
-  std::size_t queued_before_ = 0;  // of queue_, from hubs before this one
-  Senders senders_;
+  std::optional<Link> link_;  // changed by the reading thread only
+  Inbox inbox_;
+  Outbox outbox_;
+  bool closing_ = false;
   Statistics statistics_;
-  std::uint64_t index_ = 0;      // of the delivery had last from this hub
-  std::uint64_t announced_ = 0;  // losses seen as gaps in that
-  std::uint64_t consumed_ = 0;
-  std::uint64_t reported_ = 0;  // of consumed_, to this hub
   std::thread thread_;
 };
 
@@ -122,16 +112,9 @@ Transfer LocalBus::send(std::span<const Frame> frames, Timeout timeout) {
   check_sendable(frames);
   return send_queued(
       waits_, sendable_, frames, timeout,
-      [this](std::span<const Frame> rest) -> std::optional<std::size_t> {
+      [this](std::span<const Frame> rest) {
         const std::lock_guard lock(mutex_);
-        if (waits_.is_closed()) {
-          return std::nullopt;
-        }
-        const std::size_t offered = offer(rest);
-        if (offered < rest.size()) {
-          sendable_.clear();
-        }
-        return offered;
+        return offer(rest);
       },
       [this](bool gives_up) {
         const std::lock_guard lock(mutex_);
@@ -140,37 +123,59 @@ Transfer LocalBus::send(std::span<const Frame> frames, Timeout timeout) {
 }
 
 // As many as fit in their lanes' windows, up to the first that does not.
-std::size_t LocalBus::offer(std::span<const Frame> frames) {
-  if (!connection_) {
-    return 0;
+std::optional<std::size_t> LocalBus::offer(std::span<const Frame> frames) {
+  if (waits_.is_closed()) {
+    return std::nullopt;
   }
-  Stream& stream = connection_->stream;
   std::size_t count = 0;
-  for (const Frame& frame : frames) {
-    const std::size_t lane = lane_of(frame);
-    if (sent_.at(lane).size() >= connection_->welcome.window) {
+  bool asked = false;
+  while (link_ && count < frames.size()) {
+    if (outbox_.offer(frames[count], link_->stream.out())) {
+      ++count;
+      continue;
+    }
+    flush();
+    if (asked) {
       break;
     }
-    sent_.at(lane).push_back({++sequence_.at(lane), to_wire(frame)});
-    append_record(stream.out(), sent_.at(lane).back());
-    ++offered_.at(lane);
-    ++count;
+    sendable_.clear();
+    ask_for_done();
+    asked = true;
+  }
+  if (count < frames.size() && !link_) {
+    sendable_.clear();
   }
   statistics_.sent += count;
-  flush();
+  if (link_) {
+    flush();
+  }
   return count;
+}
+
+// Done may have moved just before the hub was asked to tell of it.
+void LocalBus::ask_for_done() {
+  if (Slot* const slot = inbox_.slot()) {
+    slot->awaits_done.store(1, std::memory_order_seq_cst);
+    settle();
+  }
+}
+
+void LocalBus::settle() {
+  if (const Slot* const slot = inbox_.slot()) {
+    outbox_.settle(*slot);
+  }
 }
 
 // The end of the connection shows to the reading thread, which sees to it.
 void LocalBus::flush() {
-  static_cast<void>(connection_->stream.flush());
-  if (!connection_->stream.flushed()) {
+  static_cast<void>(link_->stream.flush());
+  if (!link_->stream.flushed()) {
     wake_.set();
   }
 }
 
 Transfer LocalBus::receive(std::span<Received> frames, Timeout timeout) {
-  return receive_queued(waits_, queue_.readable(), frames, timeout,
+  return receive_queued(waits_, inbox_.readable(), frames, timeout,
                         [this](std::span<Received> room) -> std::optional<std::size_t> {
                           const std::lock_guard lock(mutex_);
                           return waits_.is_closed() ? std::nullopt : std::optional(take(room));
@@ -178,35 +183,16 @@ Transfer LocalBus::receive(std::span<Received> frames, Timeout timeout) {
 }
 
 std::size_t LocalBus::take(std::span<Received> frames) {
-  if (waits_.is_cancelled() && connection_) {
-    fetch();
+  while (inbox_.empty() && inbox_.fetch()) {
   }
-  const std::size_t count = queue_.take(frames);
-  const std::size_t before = std::min(count, queued_before_);
-  queued_before_ -= before;
-  consumed_ += count - before;
-  report_consumed();
+  const std::size_t count = inbox_.take(frames);
+  tell_if_waited_for();
   return count;
 }
 
-// What has come, and the reading thread has not got round to.
-void LocalBus::fetch() {
-  while (queue_.size() == 0 && !over_) {
-    const Stream::Read got = read();
-    over_ = got == Stream::Read::end;
-    if (got == Stream::Read::nothing) {
-      return;
-    }
-  }
-  if (over_) {
-    wake_.set();
-  }
-}
-
-void LocalBus::report_consumed() {
-  if (connection_ && consumed_ - reported_ >= consumed_lot) {
-    reported_ = consumed_;
-    append_record(connection_->stream.out(), Consumed{consumed_});
+void LocalBus::tell_if_waited_for() {
+  if (link_ && inbox_.must_tell()) {
+    append_record(link_->stream.out(), GoOn{});
     flush();
   }
 }
@@ -215,44 +201,29 @@ void LocalBus::set_filters(std::span<const SocketCanFilter> filters) {
   if (filters.size() > max_filters) {
     throw std::system_error(Errc::too_many_filters, name_);
   }
-  std::unique_lock lock(mutex_);
-  filters_.assign(filters.begin(), filters.end());
-  if (!connection_) {
-    return;  // the next one begins with them
-  }
-  append_filters(connection_->stream.out(), filters_);
-  flush();
-  // In the socket they are before whatever anybody sends after this.
-  const std::uint64_t end = connection_->stream.appended();
-  const std::uint64_t number = connection_number_;
-  flushed_.wait_for(lock, filter_time, [this, end, number] {
-    return !connection_ || connection_number_ != number || connection_->stream.sent() >= end ||
-           waits_.is_closed();
-  });
+  const std::lock_guard lock(mutex_);
+  inbox_.set_filters(filters);
+  wake_.set();
 }
 
 BusState LocalBus::state() const {
   const std::lock_guard lock(mutex_);
-  return connection_ ? BusState::active : BusState::absent;
+  if (!link_) {
+    return BusState::absent;
+  }
+  return is_stopped(link_->hub) ? BusState::down : BusState::active;
 }
 
 Statistics LocalBus::statistics() const {
   const std::lock_guard lock(mutex_);
   Statistics statistics = statistics_;
-  queue_.add_to(statistics);
-  if (connection_) {
-    const HubCounters& counters = connection_->page.counters();
-    statistics.dropped += counters.dropped.load(std::memory_order_relaxed);
-    statistics.unheard += counters.unheard.load(std::memory_order_relaxed);
-  }
+  inbox_.add_to(statistics);
   return statistics;
 }
 
 std::optional<std::size_t> LocalBus::listeners() const {
   const std::lock_guard lock(mutex_);
-  return connection_ ? std::optional<std::size_t>(
-                           connection_->page.counters().listeners.load(std::memory_order_relaxed))
-                     : std::nullopt;
+  return link_ ? std::optional(inbox_.listeners()) : std::nullopt;
 }
 
 void LocalBus::close() noexcept {
@@ -262,126 +233,94 @@ void LocalBus::close() noexcept {
       return;
     }
     waits_.close();
-    flushed_.notify_all();
-    all_done_.wait_for(lock, close_time, [this] { return unacknowledged() == 0; });
-    statistics_.unsent += unacknowledged();
+    closing_ = true;
+    ask_for_done();
+    all_done_.wait_for(lock, close_time, [this] { return outbox_.size() == 0; });
+    settle();
+    statistics_.unsent += outbox_.size();
   }
   stop_.set();
   thread_.join();
+  connector_.end_presence();
   const std::lock_guard lock(mutex_);
-  if (connection_) {
-    disconnect();
-  }
+  link_.reset();
   connector_.leave();
 }
 
 void LocalBus::run() {
   while (!stop_.is_set()) {
-    // Only this thread ends or replaces the connection, so it may look without the lock.
-    if (!connection_) {
-      reconnect();
-      continue;
+    try {
+      // Only this thread ends or replaces the link, so it may look without the lock.
+      if (!link_) {
+        reconnect();
+      } else if (prepare_to_sleep()) {
+        sleep();
+      }
+      work();
+    } catch (const std::bad_alloc&) {
+      // Without memory it cannot keep up; what was lost is counted. It comes back when there is.
+      disconnect();
+      static_cast<void>(::poll(nullptr, 0, static_cast<int>(retry_interval.count())));
     }
-    const int events = wants_to_write() ? POLLIN | POLLOUT : POLLIN;
-    std::array<pollfd, 3> entries{{{connection_->stream.fd(), static_cast<short>(events), 0},
-                                   {wake_.fd(), POLLIN, 0},
-                                   {stop_.fd(), POLLIN, 0}}};
-    static_cast<void>(::poll(entries.data(), entries.size(), -1));
-    serve();
   }
 }
 
-bool LocalBus::wants_to_write() const {
+/// @return false: there is more to read.
+bool LocalBus::prepare_to_sleep() {
   const std::lock_guard lock(mutex_);
-  return !connection_->stream.flushed();
+  return inbox_.sleep();
 }
 
-void LocalBus::serve() {
-  const std::lock_guard lock(mutex_);
-  wake_.clear();
-  static_cast<void>(connection_->stream.flush());
-  over_ = over_ || read() == Stream::Read::end;
-  if (over_) {
+void LocalBus::sleep() {
+  bool flushed = true;
+  {
+    const std::lock_guard lock(mutex_);
+    flushed = link_->stream.flushed();
+  }
+  const auto events = static_cast<short>(flushed ? POLLIN : POLLIN | POLLOUT);
+  std::array<pollfd, 4> entries{{{link_->stream.fd(), events, 0},
+                                 {link_->wake.get(), POLLIN, 0},
+                                 {wake_.fd(), POLLIN, 0},
+                                 {stop_.fd(), POLLIN, 0}}};
+  static_cast<void>(::poll(entries.data(), entries.size(), -1));
+  if (entries[1].revents != 0) {
+    std::uint64_t count = 0;
+    static_cast<void>(!::read(link_->wake.get(), &count, sizeof count));
+  }
+  if (entries[2].revents != 0) {
+    wake_.clear();
+  }
+  // After its welcome a hub says nothing more, so this is its end.
+  if ((entries[0].revents & (POLLIN | POLLHUP | POLLERR)) != 0) {
     disconnect();
-    ++statistics_.outages;
-  }
-  flushed_.notify_all();
-}
-
-/// One buffer's worth, so that the program gets its turn. @return end: also of what is no record.
-Stream::Read LocalBus::read() {
-  Stream& stream = connection_->stream;
-  if (const Stream::Read read = stream.read(); read != Stream::Read::some) {
-    return read;
-  }
-  Record record{};
-  Split split = Split::incomplete;
-  while ((split = stream.take(record)) == Split::record) {
-    if (!handle(record)) {
-      return Stream::Read::end;
-    }
-  }
-  report_consumed();  // duplicates are, though nobody takes them
-  return split == Split::incomplete ? Stream::Read::some : Stream::Read::end;
-}
-
-/// @return false: no hub of ours sends this.
-bool LocalBus::handle(const Record& record) {
-  switch (record.type) {
-    case RecordType::deliver:
-      return take_delivery(record.as<Deliver>());
-    case RecordType::done:
-      take_done(record.as<Done>());
-      return true;
-    default:
-      return false;
   }
 }
 
-bool LocalBus::take_delivery(const Deliver& deliver) {
-  const std::optional<Frame> frame = from_wire(deliver.frame);
-  if (!frame || deliver.index <= index_) {
-    return false;
+void LocalBus::work() {
+  const std::lock_guard lock(mutex_);
+  inbox_.stay_awake();
+  inbox_.fetch();
+  settle();
+  if (closing_ && outbox_.size() > 0) {
+    ask_for_done();
   }
-  const std::uint64_t gap = deliver.index - index_ - 1;
-  index_ = deliver.index;
-  announced_ += gap;
-  queue_.lose(gap);
-  if (!senders_.is_new(deliver.sender, lane_of(*frame), deliver.sequence)) {
-    ++statistics_.duplicates;
-    ++consumed_;
-    return true;
+  if (link_) {
+    outbox_.offer_again(link_->stream.out());
+    static_cast<void>(link_->stream.flush());
+    tell_if_waited_for();
   }
-  const Timestamp time{std::chrono::nanoseconds(deliver.time_ns)};
-  queue_.put(*frame, time);
-  return true;
-}
-
-void LocalBus::take_done(const Done& done) {
-  for (std::size_t lane = 0; lane < lane_count; ++lane) {
-    auto& sent = sent_.at(lane);
-    while (!sent.empty() && sent.front().sequence <= done.sequence.at(lane)) {
-      sent.pop_front();
-      offered_.at(lane) -= std::min<std::size_t>(offered_.at(lane), 1);
-    }
-  }
-  offer_again();
-  flush();
   sendable_.set();
-  if (unacknowledged() == 0) {
+  if (outbox_.size() == 0) {
     all_done_.notify_all();
   }
 }
 
-// What the hub had for this client and cannot give any more is lost, and told with the next frame.
 void LocalBus::disconnect() {
-  const HubCounters& counters = connection_->page.counters();
-  const std::uint64_t lost = counters.dropped.load(std::memory_order_relaxed) +
-                             counters.at_risk.load(std::memory_order_relaxed);
-  statistics_.dropped += lost;
-  statistics_.unheard += counters.unheard.load(std::memory_order_relaxed);
-  queue_.lose(lost - std::min(lost, announced_));
-  connection_.reset();
+  const std::lock_guard lock(mutex_);
+  if (link_) {
+    link_.reset();
+    ++statistics_.outages;
+  }
 }
 
 void LocalBus::reconnect() {
@@ -400,28 +339,14 @@ void LocalBus::reconnect() {
 }
 
 void LocalBus::adopt(Connection connection) {
-  connection_.emplace(std::move(connection));
-  ++connection_number_;
-  over_ = false;
-  index_ = announced_ = consumed_ = reported_ = 0;
-  queued_before_ = queue_.size();
-  append_filters(connection_->stream.out(), filters_);
-  offered_.fill(0);
-  offer_again();
+  settle();  // by the memory before, if this is another
+  inbox_.adopt(std::move(connection.memory), connection.welcome);
+  settle();
+  outbox_.begin(connection.welcome.window);
+  link_.emplace(Link{std::move(connection.stream), std::move(connection.wake), connection.hub});
+  statistics_.resent += outbox_.offer_again(link_->stream.out());
   flush();
   sendable_.set();
-}
-
-// Frames that the last hub did not report done, as many as this one lets be under way.
-void LocalBus::offer_again() {
-  for (std::size_t lane = 0; lane < lane_count; ++lane) {
-    const auto& sent = sent_.at(lane);
-    std::size_t& offered = offered_.at(lane);
-    while (offered < sent.size() && offered < connection_->welcome.window) {
-      append_record(connection_->stream.out(), sent.at(offered++));
-      ++statistics_.resent;
-    }
-  }
 }
 
 }  // namespace

@@ -20,18 +20,15 @@ constexpr milliseconds longest_pause{20};
 
 std::uint64_t random_client() {
   std::random_device device;
-  return (std::uint64_t{device()} << 32) | device();
+  return (std::uint64_t{device()} << 32) | device() | 1U;  // 0 is nobody's
 }
 
 /// @return false: the time is up, or stop is set.
-bool wait_readable(int fd, milliseconds timeout, const EventFlag& stop) {
+bool wait_readable(int fd, milliseconds limit, const Deadline& deadline, const EventFlag& stop) {
+  const auto timeout = std::min(limit, std::chrono::ceil<milliseconds>(deadline.remaining()));
   std::array<pollfd, 2> entries{{{fd, POLLIN, 0}, {stop.fd(), POLLIN, 0}}};
   return ::poll(entries.data(), entries.size(), static_cast<int>(timeout.count())) > 0 &&
          entries[1].revents == 0;
-}
-
-milliseconds at_most(milliseconds limit, const Deadline& deadline) {
-  return std::min(limit, std::chrono::ceil<milliseconds>(deadline.remaining()));
 }
 
 }  // namespace
@@ -45,10 +42,11 @@ Connector::Connector(const std::string& bus_name, std::optional<std::uint32_t> b
       place_(bus_name) {}
 
 std::optional<Connection> Connector::connect(const Deadline& deadline, const EventFlag& stop) {
+  silent_hub_.reset();
   for (milliseconds pause = first_pause; !stop.is_set();
        pause = std::min(pause * 2, longest_pause)) {
-    if (UniqueFd socket = place_.connect()) {
-      if (auto connection = greet(std::move(socket), deadline, stop)) {
+    if (auto hub = place_.find()) {
+      if (auto connection = greet(std::move(*hub), stop)) {
         return connection;
       }
     } else if (auto seat = may_be_hub_ ? place_.claim() : std::nullopt) {
@@ -58,42 +56,63 @@ std::optional<Connection> Connector::connect(const Deadline& deadline, const Eve
     if (deadline.passed()) {
       break;
     }
-    static_cast<void>(wait_readable(-1, at_most(pause, deadline), stop));
+    static_cast<void>(wait_readable(-1, pause, deadline, stop));
   }
   return std::nullopt;
 }
 
-std::optional<Connection> Connector::greet(UniqueFd socket, const Deadline& deadline,
-                                           const EventFlag& stop) {
-  static_assert(sizeof(Welcome) == sizeof(Refused), "read before it is known which one comes");
-  Stream stream(std::move(socket));
+std::system_error Connector::why_not() const {
+  const std::string name = "local:" + bus_name_;
+  return silent_hub_ && is_stopped(*silent_hub_)
+             ? std::system_error(Errc::carrier_stopped,
+                                 name + ": " + describe_process(*silent_hub_))
+             : std::system_error(Errc::not_connected, name);
+}
+
+std::optional<Connection> Connector::greet(Place::Hub hub, const EventFlag& stop) {
+  static_assert(sizeof(Welcome) >= sizeof(Refused), "read before it is known which one comes");
+  if (!presence_.is_at(hub.lock_path)) {
+    presence_ = Presence(hub.lock_path, client_);
+  }
+  Stream stream(std::move(hub.socket));
   append_record(stream.out(),
-                Hello{magic, protocol_version, was_connected_ ? std::uint16_t{1} : std::uint16_t{0},
-                      client_, bitrate_bps_.value_or(0), 0});
-  if (!stream.flush() || !stream.flushed() ||
-      !wait_readable(stream.fd(), at_most(greeting_time, deadline), stop)) {
+                Hello{magic, protocol_version, 0, client_, bitrate_bps_.value_or(0), 0});
+  if (!presence_.shown() || !stream.flush() || !stream.flushed()) {
+    return std::nullopt;  // that hub is leaving
+  }
+  // Whatever the deadline: who asks without waiting is told of a bus that is there.
+  if (!wait_readable(stream.fd(), greeting_time, Deadline(forever), stop)) {
+    silent_hub_ = hub.process;
     return std::nullopt;
   }
   std::array<std::uint8_t, sizeof(RecordHead) + sizeof(Welcome)> answer{};
-  UniqueFd page;
-  const std::size_t size = receive_with_fd(stream.fd(), answer, page);
+  UniqueFd wake;
+  const std::size_t size = receive_with_fd(stream.fd(), answer, wake);
   std::span<const std::uint8_t> bytes = std::span(answer).first(size);
   Record record{};
-  if (take_record(bytes, record) != Split::record) {
-    return std::nullopt;
+  switch (take_record(bytes, record)) {
+    case Split::incomplete:
+      return std::nullopt;
+    case Split::malformed:
+      throw std::system_error(Errc::version_mismatch, "local:" + bus_name_);
+    case Split::record:
+      break;
   }
   if (record.type == RecordType::refused) {
     throw_refused(record.as<Refused>());
   }
-  if (record.type != RecordType::welcome || !page) {
+  if (record.type != RecordType::welcome || !wake) {
     throw std::system_error(Errc::version_mismatch, "local:" + bus_name_);
   }
   const auto welcome = record.as<Welcome>();
+  if (welcome.slot >= max_clients || !is_memory_of(presence_.fd(), welcome.identity)) {
+    return std::nullopt;  // its files have been replaced under it; it is about to notice
+  }
   if (welcome.bitrate_bps != 0) {
     bitrate_bps_ = welcome.bitrate_bps;  // a hub that we may have to start goes on at the same rate
   }
-  was_connected_ = true;
-  return Connection{std::move(stream), CounterPage(std::move(page)), welcome};
+  ClientMemory memory(presence_.fd(), welcome.slot);
+  return Connection{std::move(stream), std::move(memory), std::move(wake), welcome, hub.process};
 }
 
 void Connector::throw_refused(const Refused& refused) const {

@@ -7,9 +7,10 @@
 #include <roio/parts/deadline.hpp>
 #include <string>
 
-#include "local/counters.hpp"
 #include "local/hub.hpp"
+#include "local/memory.hpp"
 #include "local/place.hpp"
+#include "local/presence.hpp"
 #include "local/stream.hpp"
 
 namespace roio::local {
@@ -17,8 +18,10 @@ namespace roio::local {
 /// A client's connection after the hub's welcome.
 struct Connection {
   Stream stream;
-  CounterPage page;
+  ClientMemory memory;
+  UniqueFd wake;  // readable when the hub has news
   Welcome welcome;
+  pid_t hub;
 };
 
 /// Gets a client to a bus's hub, whichever process that is, and starts one here when there is none
@@ -32,27 +35,33 @@ class Connector {
   Connector(const std::string& bus_name, std::optional<std::uint32_t> bitrate_bps, bool may_be_hub);
 
   /// @param stop gives up when it is set.
-  /// @return none: not before the deadline, or stopped.
-  /// @throws Errc::bitrate_mismatch, version_mismatch, not_permitted; system errors.
+  /// @return none: not before the deadline, or stopped; why_not() says why.
+  /// @throws Errc::bitrate_mismatch, version_mismatch, bus_full, not_permitted; system errors.
   std::optional<Connection> connect(const Deadline& deadline, const EventFlag& stop);
 
+  /// This client's number.
+  [[nodiscard]] std::uint64_t client() const { return client_; }
+
+  /// Why connect() returned none.
+  [[nodiscard]] std::system_error why_not() const;
+
+  /// Before the connection ends: this client needs nothing any more that the bus still has for it.
+  void end_presence() { presence_.end(); }
   /// Ends the hub, when it is here.
   void leave() { hub_.reset(); }
 
  private:
-  std::optional<Connection> greet(UniqueFd socket, const Deadline& deadline, const EventFlag& stop);
+  std::optional<Connection> greet(Place::Hub hub, const EventFlag& stop);
   [[noreturn]] void throw_refused(const Refused& refused) const;
 
   std::string bus_name_;
   std::optional<std::uint32_t> bitrate_bps_;
   const bool may_be_hub_;
-  bool was_connected_ = false;
   std::uint64_t client_;
   Place place_;
   std::unique_ptr<Hub> hub_;
-
- public:
-  [[nodiscard]] std::uint64_t client() const { return client_; }
+  Presence presence_;                // from the first hub to the last
+  std::optional<pid_t> silent_hub_;  // the one that did not answer
 };
 
 }  // namespace roio::local

@@ -1,97 +1,174 @@
 #include "local/hub.hpp"
 
-#include <poll.h>
 #include <sys/socket.h>
 
 #include <algorithm>
 #include <cerrno>
+#include <new>
 #include <roio/error.hpp>
 #include <roio/parts/thread.hpp>
 #include <utility>
 
+#include "local/presence.hpp"
+
 namespace roio::local {
 namespace {
 
-constexpr std::size_t max_clients = 256;
+// Some may be connected and not have said who they are, or be told that there is no room.
+constexpr std::size_t max_connections = max_clients + 16;
 // One client's bytes a round; the others get their turn after that.
 constexpr int reads_per_round = 16;
 constexpr std::size_t frames_per_round = 4096;
-// What a client that comes over from another hub can still be given: some 3 MB, and several seconds
-// of a saturated 1 Mbit/s bus.
-constexpr std::size_t history_limit = queue_limit;
 constexpr std::uint32_t window_unpaced = 4096;
 // What waits behind a bit rate waits long: about as many frames as a controller and its driver
 // hold.
 constexpr std::uint32_t window_paced = 64;
-constexpr std::chrono::milliseconds check_interval{20};  // while somebody is waited for
-constexpr std::chrono::seconds idle_interval{1};         // to see an overdue greeting
-constexpr std::chrono::milliseconds finish_time{200};
+constexpr std::chrono::milliseconds hold_interval{20};  // a reader that is waited for may not tell
+// To see who never greeted, who died while he was away, and whether the bus is where it was.
+constexpr std::chrono::milliseconds look_interval{500};
 constexpr std::chrono::milliseconds accept_pause{100};
+
+std::optional<std::uint32_t> rate(std::uint32_t bitrate_bps) {
+  return bitrate_bps == 0 ? std::nullopt : std::optional(bitrate_bps);
+}
 
 }  // namespace
 
 Hub::Hub(HubSeat seat, std::optional<std::uint32_t> bitrate_bps)
-    : seat_(std::move(seat)),
-      medium_(bitrate_bps),
-      now_(Clock::now()),
-      thread_(start_thread([this] { run(); })) {}
+    : seat_(std::move(seat)), memory_(seat_.lock_fd()), readers_(*memory_), now_(Clock::now()) {
+  if (!take_over()) {
+    memory_.set_up(bitrate_bps.value_or(0));
+  }
+  memory_->header.hubs.fetch_add(1, std::memory_order_relaxed);
+  medium_.emplace(rate(memory_->header.bitrate_bps.load(std::memory_order_relaxed)));
+  poller_.add(stop_.fd(), &stop_);
+  seat_.open();
+  poller_.add(seat_.listener(), &seat_);
+  thread_ = start_thread([this] { run(); });
+}
 
 Hub::~Hub() {
   stop_.set();
   thread_.join();
 }
 
-std::uint32_t Hub::window() const {
-  return medium_.bitrate_bps() ? window_paced : window_unpaced;
+/// @return whether anybody is left of the bus that is in the memory.
+bool Hub::take_over() {
+  if (!memory_.is_set_up()) {
+    return false;
+  }
+  bool any = false;
+  for (std::size_t slot = 0; slot < max_clients; ++slot) {
+    if (memory_->slots.at(slot).client.load(std::memory_order_relaxed) != 0) {
+      readers_.add(slot);
+      any = true;
+    }
+  }
+  free_slots_of_the_dead();
+  any = any && std::any_of(memory_->slots.begin(), memory_->slots.end(), [](const Slot& slot) {
+          return slot.client.load(std::memory_order_relaxed) != 0;
+        });
+  if (any) {
+    note_done_from_log();
+  }
+  return any;
 }
 
-void Hub::run() {
-  while (!stop_.is_set()) {
-    wait();
-    now_ = Clock::now();
-    wall_offset_ns_ = std::chrono::nanoseconds(std::chrono::system_clock::now().time_since_epoch() -
-                                               now_.time_since_epoch())
-                          .count();
-    accept_clients();
-    read_clients();
-    note_listeners();
-    transmit();
-    flush_clients();
-    report_done();
-    drop_closed_clients();
+// The last hub may have died after it had carried a frame and before it had told the sender.
+void Hub::note_done_from_log() {
+  const std::uint64_t head = memory_->header.head.load(std::memory_order_relaxed);
+  for (std::uint64_t i = head > log_size ? head - log_size + 1 : 1; i <= head; ++i) {
+    const Carried carried = load(entry_of(*memory_, i));
+    if (const auto slot = slot_of(carried.sender); slot && carried.lane < lane_count) {
+      auto& done = memory_->slots.at(*slot).done.at(carried.lane);
+      done.store(std::max(done.load(std::memory_order_relaxed), carried.sequence),
+                 std::memory_order_relaxed);
+    }
   }
-  finish();
+}
+
+std::uint32_t Hub::window() const {
+  return medium_->bitrate_bps() ? window_paced : window_unpaced;
+}
+
+// Without memory it cannot go on; what it had is with the others, and one of them may.
+void Hub::run() {
+  try {
+    while (!stop_.is_set() && !out_of_place_) {
+      serve();
+    }
+  } catch (const std::bad_alloc&) {
+  } catch (const std::system_error&) {
+  }
+  leave();
+}
+
+void Hub::serve() {
+  wait();
+  if (now_ >= look_again_) {
+    look_after_everybody();
+  }
+  transmit();
+  drop_closed_clients();
 }
 
 void Hub::wait() {
-  std::vector<pollfd> entries;
-  entries.reserve(clients_.size() + 2);
-  entries.push_back({stop_.fd(), POLLIN, 0});
-  entries.push_back({may_accept() ? seat_.listener() : -1, POLLIN, 0});
-  for (const auto& client : clients_) {
-    const int events = client->stream().flushed() ? POLLIN : POLLIN | POLLOUT;
-    entries.push_back({client->stream().fd(), static_cast<short>(events), 0});
+  if (std::exchange(accepting_, may_accept()) != may_accept()) {
+    if (accepting_) {
+      poller_.add(seat_.listener(), &seat_);
+    } else {
+      poller_.remove(seat_.listener());
+    }
   }
-  const auto timeout = time_to_wait();
-  const timespec spec{static_cast<time_t>(timeout.count() / 1'000'000'000),
-                      static_cast<long>(timeout.count() % 1'000'000'000)};
-  // A failed poll (a signal, no memory) is just an early wake-up.
-  static_cast<void>(::ppoll(entries.data(), entries.size(), &spec, nullptr));
+  const std::span<void* const> ready = poller_.wait(time_to_wait());
+  now_ = Clock::now();
+  wall_offset_ns_ = std::chrono::nanoseconds(std::chrono::system_clock::now().time_since_epoch() -
+                                             now_.time_since_epoch())
+                        .count();
+  for (void* const tag : ready) {
+    if (tag == &seat_) {
+      accept_clients();
+    } else if (tag != &stop_) {
+      read(*static_cast<HubClient*>(tag));
+    }
+  }
 }
 
 std::chrono::nanoseconds Hub::time_to_wait() const {
-  std::chrono::nanoseconds timeout = leaving_.empty() ? std::chrono::nanoseconds(idle_interval)
-                                                      : std::chrono::nanoseconds(check_interval);
-  if (const auto end = medium_.next_end()) {
+  std::chrono::nanoseconds timeout = look_again_ - Clock::now();
+  if (!accepting_) {
+    timeout = std::min(timeout, std::chrono::nanoseconds(accept_pause));
+  }
+  if (const auto end = medium_->next_end()) {
     timeout = std::min(timeout, std::chrono::nanoseconds(*end - Clock::now()));
-  } else if (medium_.contended()) {
-    timeout = must_hold() ? std::chrono::nanoseconds(check_interval) : std::chrono::nanoseconds(0);
+  } else if (medium_->contended()) {
+    timeout = holding_ ? std::min(timeout, std::chrono::nanoseconds(hold_interval))
+                       : std::chrono::nanoseconds(0);
   }
   return std::max(timeout, std::chrono::nanoseconds(0));
 }
 
+void Hub::look_after_everybody() {
+  look_again_ = now_ + look_interval;
+  out_of_place_ = !seat_.is_in_place();
+  for (const auto& client : clients_) {
+    if (client->greeting_overdue(now_)) {
+      cut(*client);
+    }
+  }
+  free_slots_of_the_dead();
+}
+
+// A closed descriptor would stay in the poller if a child of this process had it, too.
+void Hub::cut(HubClient& client) noexcept {
+  if (client.stream().open()) {
+    poller_.remove(client.stream().fd());
+    client.stream().close();
+  }
+}
+
 bool Hub::may_accept() const {
-  return clients_.size() < max_clients && now_ >= accept_again_;
+  return clients_.size() < max_connections && now_ >= accept_again_;
 }
 
 void Hub::accept_clients() {
@@ -104,83 +181,146 @@ void Hub::accept_clients() {
       return;
     }
     if (is_same_user(socket.get())) {
-      clients_.push_back(std::make_unique<HubClient>(std::move(socket), now_));
+      try {
+        auto client = std::make_unique<HubClient>(std::move(socket), now_);
+        poller_.add(client->stream().fd(), client.get());
+        clients_.push_back(std::move(client));
+      } catch (const std::system_error&) {
+        accept_again_ = now_ + accept_pause;  // the same; the client asks again
+      }
     }
   }
 }
 
-void Hub::read_clients() {
-  for (const auto& client : clients_) {
-    Stream& stream = client->stream();
-    for (int i = 0; i < reads_per_round && stream.open(); ++i) {
-      const Stream::Read read = stream.read();
-      if (read == Stream::Read::nothing) {
-        break;
-      }
-      if (read == Stream::Read::end) {
-        stream.close();
-        break;
-      }
-      Record record{};
-      Split split = Split::incomplete;
-      while (stream.open() && (split = stream.take(record)) == Split::record) {
-        handle(*client, record);
-      }
-      if (split == Split::malformed) {
-        stream.close();
-      }
+void Hub::read(HubClient& client) {
+  Stream& stream = client.stream();
+  for (int i = 0; i < reads_per_round && stream.open(); ++i) {
+    const Stream::Read read = stream.read();
+    if (read == Stream::Read::nothing) {
+      return;
     }
-    if (client->greeting_overdue(now_)) {
-      stream.close();
+    if (read == Stream::Read::end) {
+      cut(client);
+      return;
+    }
+    Record record{};
+    Split split = Split::incomplete;
+    while (stream.open() && (split = stream.take(record)) == Split::record) {
+      handle(client, record);
+    }
+    if (split == Split::malformed) {
+      cut(client);
+    }
+    if (!stream.filled()) {
+      return;
     }
   }
-  medium_.asked_all(now_);
 }
 
 void Hub::handle(HubClient& client, const Record& record) {
   if (client.greeted() == (record.type == RecordType::hello)) {
-    client.stream().close();
+    cut(client);
     return;
   }
   switch (record.type) {
     case RecordType::hello:
       greet(client, record.as<Hello>());
       break;
-    case RecordType::filters:
-      client.set_filters(filters_of(record));
-      if (client.take_replay_due()) {
-        replay(client);
-      }
-      break;
     case RecordType::frame:
       take_frame(client, record.as<OfferedFrame>());
       break;
-    case RecordType::consumed:
-      if (!client.consumed(record.as<Consumed>().count, now_)) {
-        client.stream().close();
-      }
-      break;
+    case RecordType::go_on:
+      break;  // it has woken this thread
     default:
-      client.stream().close();
+      cut(client);
       break;
   }
 }
 
 void Hub::greet(HubClient& client, const Hello& hello) {
-  const std::uint32_t bitrate = medium_.bitrate_bps().value_or(0);
-  if (hello.magic != magic) {
-    client.stream().close();
+  const std::uint32_t bitrate = medium_->bitrate_bps().value_or(0);
+  const auto refuse = [&](Errc why) { client.refuse({static_cast<std::uint32_t>(why), bitrate}); };
+  if (hello.magic != magic || hello.client == 0) {
+    cut(client);
   } else if (hello.version != protocol_version) {
-    client.refuse({static_cast<std::uint32_t>(Errc::version_mismatch), bitrate});
+    refuse(Errc::version_mismatch);
   } else if (hello.bitrate_bps != 0 && hello.bitrate_bps != bitrate) {
-    client.refuse({static_cast<std::uint32_t>(Errc::bitrate_mismatch), bitrate});
+    refuse(Errc::bitrate_mismatch);
+  } else if (!is_present(seat_.lock_fd(), hello.client)) {
+    cut(client);
+  } else if (const bool fresh = !slot_of(hello.client); auto slot = give_slot(hello.client)) {
+    medium_->drop_station_of(hello.client);
+    auto station = std::make_shared<Station>(hello.client, *slot);
+    const Welcome welcome{memory_->header.identity.load(std::memory_order_relaxed),
+                          static_cast<std::uint32_t>(*slot), bitrate, window(), fresh ? 1U : 0U};
+    if (!client.welcome(station, *slot, welcome)) {
+      cut(client);
+      return;
+    }
+    medium_->attach(std::move(station));
+    readers_.set_wake(*slot, &client.wake());
+    readers_.wake(*slot);  // the last hub may have died before it did
   } else {
-    try {
-      auto station = std::make_shared<Station>(hello.client);
-      client.welcome(station, hello.rejoining != 0, Welcome{bitrate, window()}, listeners());
-      medium_.attach(std::move(station));
-    } catch (const std::system_error&) {
-      client.stream().close();  // it will ask again, and see its own error if this goes on
+    refuse(Errc::bus_full);
+  }
+}
+
+std::optional<std::size_t> Hub::slot_of(std::uint64_t client) const {
+  const auto found = std::find_if(
+      memory_->slots.begin(), memory_->slots.end(),
+      [client](const Slot& slot) { return slot.client.load(std::memory_order_relaxed) == client; });
+  return found == memory_->slots.end()
+             ? std::nullopt
+             : std::optional(static_cast<std::size_t>(found - memory_->slots.begin()));
+}
+
+/// The one that it has, or a free one; none: there is none.
+std::optional<std::size_t> Hub::give_slot(std::uint64_t client) {
+  if (const auto slot = slot_of(client)) {
+    // It knows before this hub does that its last connection is over.
+    for (const auto& other : clients_) {
+      if (other->greeted() && other->slot() == *slot) {
+        cut(*other);
+      }
+    }
+    return slot;
+  }
+  const auto index = slot_of(0);
+  if (index) {
+    Slot& slot = memory_->slots.at(*index);
+    for (auto& done : slot.done) {
+      done.store(0, std::memory_order_relaxed);
+    }
+    slot.unheard.store(0, std::memory_order_relaxed);
+    slot.dropped.store(0, std::memory_order_relaxed);
+    slot.position.store(pack({memory_->header.head.load(std::memory_order_relaxed) + 1, 0}),
+                        std::memory_order_relaxed);
+    slot.sleeping.store(0, std::memory_order_relaxed);
+    slot.awaits_done.store(0, std::memory_order_relaxed);
+    slot.bus_waits.store(0, std::memory_order_relaxed);
+    slot.queued.store(0, std::memory_order_relaxed);
+    slot.consumed.store(0, std::memory_order_relaxed);
+    slot.filter_version.store(0, std::memory_order_relaxed);
+    slot.filter_count.store(0, std::memory_order_relaxed);
+    slot.client.store(client, std::memory_order_release);
+    readers_.add(*index);
+  }
+  return index;
+}
+
+// Who is not connected and still alive is to come over yet: a stopped process, for one.
+void Hub::free_slots_of_the_dead() {
+  std::array<bool, max_clients> connected{};
+  for (const auto& client : clients_) {
+    connected.at(client->slot()) |= client->greeted() && client->stream().open();
+  }
+  for (std::size_t i = 0; i < max_clients; ++i) {
+    Slot& slot = memory_->slots.at(i);
+    const std::uint64_t client = slot.client.load(std::memory_order_relaxed);
+    if (client != 0 && !connected.at(i) && !is_present(seat_.lock_fd(), client)) {
+      slot.filter_count.store(0, std::memory_order_relaxed);
+      slot.client.store(0, std::memory_order_relaxed);
+      readers_.remove(i);
     }
   }
 }
@@ -189,153 +329,93 @@ void Hub::take_frame(HubClient& client, const OfferedFrame& offered) {
   const std::optional<Frame> frame = from_wire(offered.frame);
   // A client of ours stays within its window; what does not is no client of ours.
   if (!frame || client.station()->waiting(lane_of(*frame)) > window()) {
-    client.stream().close();
+    cut(client);
     return;
   }
-  client.station()->add(lane_of(*frame), {*frame, offered.sequence});
-}
-
-std::uint64_t Hub::listeners() const {
-  return static_cast<std::uint64_t>(std::count_if(
-      clients_.begin(), clients_.end(), [](const auto& client) { return client->listens(); }));
-}
-
-// Before anything is carried: who then looks knows of all who were to have it.
-void Hub::note_listeners() {
-  const std::uint64_t all = listeners();
-  for (const auto& client : clients_) {
-    client->note_listeners(all - (client->listens() ? 1 : 0));
+  const std::size_t lane = lane_of(*frame);
+  if (offered.sequence >
+      memory_->slots.at(client.slot()).done.at(lane).load(std::memory_order_relaxed)) {
+    client.station()->add(lane, {*frame, offered.sequence});
   }
-}
-
-bool Hub::must_hold() const {
-  return !medium_.bitrate_bps() && std::any_of(clients_.begin(), clients_.end(),
-                                               [this](auto& c) { return c->holds_bus(now_); });
+  medium_->offered(now_);
 }
 
 void Hub::transmit() {
-  for (std::size_t i = 0; i < frames_per_round && !must_hold(); ++i) {
-    const auto transmission = medium_.next(now_);
+  if (!medium_->contended() && !medium_->next_end()) {
+    return;
+  }
+  holding_ = !medium_->bitrate_bps() && readers_.hold_bus(now_);
+  const std::size_t listeners = readers_.listeners();
+  std::size_t carried = 0;
+  while (!holding_ && carried < frames_per_round) {
+    const auto transmission = medium_->next(now_);
     if (!transmission) {
-      return;
+      break;
     }
-    fan_out(*transmission);
+    carry(*transmission, listeners);
+    ++carried;
+  }
+  if (carried > 0) {
+    readers_.wake_for_news();
+    for (const std::size_t slot : std::exchange(done_, {})) {
+      readers_.wake_for_done(slot);
+    }
   }
 }
 
-void Hub::fan_out(const Medium::Transmission& transmission) {
+void Hub::carry(const Medium::Transmission& transmission, std::size_t listeners) {
   const auto& [from, offer, lane, end] = transmission;
-  ++bus_number_;
-  const std::uint32_t tagged = tagged_id(offer.frame);
+  std::atomic<std::uint64_t>& head = memory_->header.head;
+  const std::uint64_t number = head.load(std::memory_order_relaxed) + 1;
+  if (number > log_size) {
+    readers_.take_away(number - log_size);
+  }
   const std::int64_t time_ns =
       std::chrono::nanoseconds(end.time_since_epoch()).count() + wall_offset_ns_;
-  const Deliver deliver{0, from->sender(), offer.sequence, time_ns, to_wire(offer.frame)};
-  HubClient* sender = nullptr;
-  bool is_heard = false;
-  for (const auto& client : clients_) {
-    if (!client->greeted()) {
-      continue;
-    }
-    if (client->station() == from) {
-      sender = client.get();
-      continue;
-    }
-    is_heard = is_heard || client->listens();
-    if (client->wants(tagged)) {
-      client->deliver(deliver, bus_number_, now_);
-    }
+  store(entry_of(*memory_, number),
+        {from->sender(), offer.sequence, lane, time_ns, to_wire(offer.frame)});
+  head.store(number, std::memory_order_seq_cst);
+  Slot& slot = memory_->slots.at(from->slot());
+  if (slot.client.load(std::memory_order_relaxed) != from->sender()) {
+    return;  // its client has gone
   }
-  if (!is_heard && sender != nullptr) {
-    sender->note_unheard();
+  // Before it is done: who then looks knows.
+  if (listeners == (Readers::listens(slot) ? 1 : 0)) {
+    slot.unheard.fetch_add(1, std::memory_order_relaxed);
   }
-  if (history_.size() == history_limit) {
-    history_.pop_front();
+  slot.done.at(lane).store(offer.sequence, std::memory_order_seq_cst);
+  if (done_.empty() || done_.back() != from->slot()) {
+    done_.push_back(from->slot());
   }
-  history_.push_back(deliver);
-  leaving_.push_back({bus_number_, from, lane, offer.sequence});
-}
-
-// A client that comes over late would miss what was carried before it came; what it had from the
-// last hub it leaves out itself.
-void Hub::replay(HubClient& client) {
-  if (client.listens()) {
-    for (const auto& other : clients_) {
-      other->forget_unheard();
-    }
-  }
-  client.drop(bus_number_ - history_.size());
-  std::uint64_t number = bus_number_ - history_.size();
-  for (const Deliver& deliver : history_) {
-    ++number;
-    if (deliver.sender != client.station()->sender() && client.wants(deliver.frame.tagged_id)) {
-      client.deliver(deliver, number, now_);
-    }
-  }
-}
-
-void Hub::flush_clients() {
-  for (const auto& client : clients_) {
-    if (client->stream().open() && !client->flush(now_)) {
-      client->stream().close();
-    }
-  }
-}
-
-void Hub::report_done() {
-  const bool paced = medium_.bitrate_bps().has_value();
-  std::uint64_t limit = bus_number_;
-  for (const auto& client : clients_) {
-    if (client->stream().open() && client->holds_done(now_, paced)) {
-      limit = std::min(limit, *client->first_unflushed() - 1);
-    }
-  }
-  done_number_ = std::max(done_number_, limit);
-  // Before any sender hears of it: killed between the two, the hub has counted too much, not too
-  // little.
-  for (const auto& client : clients_) {
-    client->note_risk(done_number_);
-  }
-  while (!leaving_.empty() && leaving_.front().number <= limit) {
-    const Leaving& frame = leaving_.front();
-    const auto owner = std::find_if(clients_.begin(), clients_.end(), [&](const auto& client) {
-      return client->station() == frame.from;
-    });
-    if (owner != clients_.end()) {
-      (*owner)->report_done(frame.lane, frame.sequence);
-    }
-    leaving_.pop_front();
-  }
-  for (const auto& client : clients_) {
-    client->append_done();
-  }
-  flush_clients();
 }
 
 void Hub::drop_closed_clients() {
-  std::erase_if(clients_, [this](const std::unique_ptr<HubClient>& client) {
+  const auto closed = [this](const std::unique_ptr<HubClient>& client) {
     if (client->stream().open()) {
       return false;
     }
     if (client->greeted()) {
-      medium_.detach(client->station());
+      readers_.set_wake(client->slot(), nullptr);
+      medium_->detach(client->station());
     }
     return true;
-  });
+  };
+  if (std::erase_if(clients_, closed) > 0) {
+    free_slots_of_the_dead();
+  }
 }
 
-// What has been fanned out is passed on, as far as its readers take it in time.
-void Hub::finish() {
-  const auto end = Clock::now() + finish_time;
-  for (now_ = Clock::now(); now_ < end; now_ = Clock::now()) {
-    flush_clients();
-    report_done();
-    drop_closed_clients();
-    const bool flushed = std::all_of(clients_.begin(), clients_.end(),
-                                     [](auto& client) { return client->stream().flushed(); });
-    if (leaving_.empty() && flushed) {
-      return;
-    }
-    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+// All that has been carried is in the memory, for whoever is still to read it. The seat is free
+// before anybody sees that this hub has gone.
+void Hub::leave() noexcept {
+  const bool anybody =
+      std::any_of(memory_->slots.begin(), memory_->slots.end(), [this](const Slot& slot) {
+        const std::uint64_t client = slot.client.load(std::memory_order_relaxed);
+        return client != 0 && is_present(seat_.lock_fd(), client);
+      });
+  seat_.leave(!anybody);
+  for (const auto& client : clients_) {
+    cut(*client);
   }
 }
 

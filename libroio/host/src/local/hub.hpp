@@ -3,7 +3,6 @@
 
 #include <chrono>
 #include <cstdint>
-#include <deque>
 #include <memory>
 #include <optional>
 #include <roio/parts/fd.hpp>
@@ -12,70 +11,84 @@
 
 #include "local/hub_client.hpp"
 #include "local/medium.hpp"
+#include "local/memory.hpp"
 #include "local/place.hpp"
+#include "local/poller.hpp"
+#include "local/readers.hpp"
 
 namespace roio::local {
 
-/// The middle of a local bus: takes frames from its clients, arbitrates among them, hands each to
-/// all the others that want it. Runs in a thread of the process that holds the seat.
+/// The middle of a local bus: takes frames from its clients, arbitrates among them, and writes each
+/// to the log, where all read it. Runs in a thread of the process that holds the seat.
 ///
 /// Flow: without a bit rate, the bus waits for a reader that lags and still reads (at least max_lag
-/// frames behind, and consumed some in the last patience); one that does not read costs the others
-/// no more than one patience. With a bit rate nobody is waited for. A reader's queue holds
-/// queue_limit frames; what is due beyond is dropped and counted.
+/// frames behind, and read some in the last patience); one that does not read costs the others no
+/// more than one patience. With a bit rate nobody is waited for. What the log runs over before it
+/// was read is dropped and counted.
 class Hub {
  public:
-  /// Starts serving. @throws std::system_error: no thread or descriptor to be had.
+  /// Goes on with the bus that the seat's memory holds, or begins a new one where nobody is left of
+  /// that, and starts serving.
+  /// @param bitrate_bps of a new one; none: no limit.
+  /// @throws std::system_error: no memory, thread or descriptor to be had.
   Hub(HubSeat seat, std::optional<std::uint32_t> bitrate_bps);
   Hub(const Hub&) = delete;
   Hub& operator=(const Hub&) = delete;
-  /// Passes on what has been arbitrated already (within a moment), then leaves the seat. Frames
-  /// that have not been are still with their senders, who offer them to the next hub.
+  /// Leaves the seat. Frames that have not been carried are still with their senders, who offer
+  /// them to the next hub.
   ~Hub();
 
  private:
   using Clock = std::chrono::steady_clock;
 
-  /// A frame on its way out, until every reader that is waited for has it in its socket.
-  struct Leaving {
-    std::uint64_t number;  // in the order of the bus, from 1
-    std::shared_ptr<Station> from;
-    std::size_t lane;
-    std::uint64_t sequence;
-  };
+  // Taking over.
+  bool take_over();
+  void note_done_from_log();
 
+  // The thread.
   void run();
+  void serve();
   void wait();
+  [[nodiscard]] std::chrono::nanoseconds time_to_wait() const;
+  void look_after_everybody();
+  void leave() noexcept;
+
+  // Clients.
+  [[nodiscard]] bool may_accept() const;
   void accept_clients();
   void read_clients();
+  void read(HubClient& client);
   void handle(HubClient& client, const Record& record);
   void greet(HubClient& client, const Hello& hello);
   void take_frame(HubClient& client, const OfferedFrame& offered);
-  [[nodiscard]] std::uint64_t listeners() const;
-  void note_listeners();
-  void transmit();
-  void replay(HubClient& client);
-  void fan_out(const Medium::Transmission& transmission);
-  void flush_clients();
-  void report_done();
+  void cut(HubClient& client) noexcept;
   void drop_closed_clients();
-  void finish();
-  [[nodiscard]] bool may_accept() const;
-  [[nodiscard]] bool must_hold() const;
-  [[nodiscard]] std::chrono::nanoseconds time_to_wait() const;
+
+  // Slots.
+  [[nodiscard]] std::optional<std::size_t> slot_of(std::uint64_t client) const;
+  std::optional<std::size_t> give_slot(std::uint64_t client);
+  void free_slots_of_the_dead();
+
+  // Frames.
+  void transmit();
+  void carry(const Medium::Transmission& transmission, std::size_t listeners);
   [[nodiscard]] std::uint32_t window() const;
 
   HubSeat seat_;
-  Medium medium_;
+  HubMemory memory_;
+  Readers readers_;
+  std::optional<Medium> medium_;
   EventFlag stop_;
+  Poller poller_;
   std::vector<std::unique_ptr<HubClient>> clients_;
-  std::deque<Leaving> leaving_;
-  std::deque<Deliver> history_;    // the frames carried last
-  std::uint64_t bus_number_ = 0;   // of the frame fanned out last
-  std::uint64_t done_number_ = 0;  // of the frame last reported done
+  std::vector<std::size_t> done_;  // slots whose frames have been carried in this round
   Clock::time_point now_;
   Clock::time_point accept_again_{};
+  Clock::time_point look_again_{};
   std::int64_t wall_offset_ns_ = 0;  // wall clock minus steady clock, looked at once a round
+  bool accepting_ = true;            // the poller tells of new clients
+  bool holding_ = false;             // for readers who lag
+  bool out_of_place_ = false;        // another hub is where this one should be, or none
   std::thread thread_;               // last: it uses all of the above
 };
 

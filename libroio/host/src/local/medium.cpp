@@ -6,9 +6,9 @@
 
 namespace roio::local {
 
-void Station::asked_again() {
-  for (Lane& lane : lanes_) {
-    lane.ready = std::exchange(lane.next_ready, lane.waiting.size());
+void Station::clear() {
+  for (auto& lane : lanes_) {
+    lane.clear();
   }
 }
 
@@ -22,11 +22,9 @@ std::optional<std::size_t> Station::lane() const {
 }
 
 Station::Offer Station::take() {
-  Lane& lane = lanes_.at(*this->lane());
-  const Offer offer = lane.waiting.front();
-  lane.waiting.pop_front();
-  --lane.ready;
-  --lane.next_ready;
+  auto& lane = lanes_.at(*this->lane());
+  const Offer offer = lane.front();
+  lane.pop_front();
   return offer;
 }
 
@@ -41,10 +39,16 @@ void Medium::drop_detached() {
   });
 }
 
-void Medium::asked_all(TimePoint now) {
-  for (const auto& station : stations_) {
-    station->asked_again();
+void Medium::drop_station_of(std::uint64_t sender) {
+  for (const auto& station : detached_) {
+    if (station->sender() == sender) {
+      station->clear();
+    }
   }
+  drop_detached();
+}
+
+void Medium::offered(TimePoint now) {
   if (!contended_) {
     idle_since_ = std::max(idle_since_, now);
     contended_ = true;
@@ -93,7 +97,7 @@ std::optional<Medium::Transmission> Medium::arbitrate() {
       lowest = key;
     }
   }
-  if (!winner || !stations_[*winner]->may_take()) {
+  if (!winner) {
     return std::nullopt;
   }
   first_ = *winner + 1;  // so that two stations with one identifier take turns

@@ -14,45 +14,37 @@
 namespace roio::local {
 
 /// One client's frames that wait for the bus: what a controller's transmit buffers are on a real
-/// one. A frame is given first, and may be taken once asked_again() has been called twice.
+/// one.
 class Station {
  public:
-  explicit Station(std::uint64_t sender) : sender_(sender) {}
+  /// @param slot of its client in the bus's memory.
+  Station(std::uint64_t sender, std::size_t slot) : sender_(sender), slot_(slot) {}
 
   struct Offer {
     Frame frame;
     std::uint64_t sequence;
   };
 
-  void add(std::size_t lane, const Offer& offer) { lanes_.at(lane).waiting.push_back(offer); }
-  /// Every client has been asked once more: what had been added when this was last called, may be
-  /// taken from now on.
-  void asked_again();
+  void add(std::size_t lane, const Offer& offer) { lanes_.at(lane).push_back(offer); }
+  /// Its client offers all of them anew.
+  void clear();
   [[nodiscard]] std::uint64_t sender() const { return sender_; }
+  [[nodiscard]] std::size_t slot() const { return slot_; }
   [[nodiscard]] bool empty() const {
     return waiting(urgent_lane) == 0 && waiting(normal_lane) == 0;
   }
-  [[nodiscard]] std::size_t waiting(std::size_t lane) const {
-    return lanes_.at(lane).waiting.size();
-  }
+  [[nodiscard]] std::size_t waiting(std::size_t lane) const { return lanes_.at(lane).size(); }
 
   /// The lane that this station contends with: urgent frames pass normal ones. None when empty.
   [[nodiscard]] std::optional<std::size_t> lane() const;
   /// The first frame of that lane. Not when empty.
-  [[nodiscard]] const Offer& front() const { return lanes_.at(*lane()).waiting.front(); }
-  /// Whether it may be taken yet.
-  [[nodiscard]] bool may_take() const { return lanes_.at(*lane()).ready > 0; }
+  [[nodiscard]] const Offer& front() const { return lanes_.at(*lane()).front(); }
   Offer take();
 
  private:
-  struct Lane {
-    std::deque<Offer> waiting;
-    std::size_t ready = 0;       // of waiting, from the front: may be taken
-    std::size_t next_ready = 0;  // ready, once asked_again() has been called
-  };
-
   std::uint64_t sender_;
-  std::array<Lane, lane_count> lanes_;
+  std::size_t slot_;
+  std::array<std::deque<Offer>, lane_count> lanes_;
 };
 
 /// The wire between the stations: lowest arbitration key first and, when it has a bit rate, one
@@ -76,22 +68,19 @@ class Medium {
   void attach(std::shared_ptr<Station> station) { stations_.push_back(std::move(station)); }
   /// The station stays until its frames have been sent, as a controller's would.
   void detach(const std::shared_ptr<Station>& station);
+  /// A client has come back, and offers anew what its station still had.
+  void drop_station_of(std::uint64_t sender);
 
-  /// Tells that every client has been asked once more, at `now`, for what it has sent.
-  ///
-  /// Frames that stations had been given before that round may pass from now on; those of the round
-  /// itself not yet. For clients are asked one after the other: what the first sent before the last
-  /// did (its filters: it means to hear the last one's frame) may have come just after it was
-  /// asked, and is known a round later. A frame that would win is waited for.
-  void asked_all(TimePoint now);
+  /// Tells that stations may have been given frames, by `now`.
+  void offered(TimePoint now);
 
   /// The next frame that has passed by `now`, if there is one. Call until there is none.
   std::optional<Transmission> next(TimePoint now);
 
-  /// Whether frames may wait: asked_all(), and next() has not found since that there are none.
+  /// Whether frames wait for the wire: next() has not found since offered() that there are none.
   [[nodiscard]] bool contended() const { return contended_; }
 
-  /// When next() will have something by itself; none: not before asked_all().
+  /// When next() will have something by itself; none: not before offered().
   [[nodiscard]] std::optional<TimePoint> next_end() const;
 
  private:

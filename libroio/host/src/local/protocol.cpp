@@ -9,20 +9,14 @@ bool size_fits(RecordType type, std::size_t size) noexcept {
   switch (type) {
     case RecordType::hello:
       return size == sizeof(Hello);
-    case RecordType::filters:
-      return size % sizeof(SocketCanFilter) == 0 && size <= max_filters * sizeof(SocketCanFilter);
     case RecordType::frame:
       return size == sizeof(OfferedFrame);
-    case RecordType::consumed:
-      return size == sizeof(Consumed);
     case RecordType::welcome:
       return size == sizeof(Welcome);
     case RecordType::refused:
       return size == sizeof(Refused);
-    case RecordType::deliver:
-      return size == sizeof(Deliver);
-    case RecordType::done:
-      return size == sizeof(Done);
+    case RecordType::go_on:
+      return size == sizeof(GoOn);
   }
   return false;
 }
@@ -59,22 +53,6 @@ void detail::append(Buffer& out, RecordType type, std::span<const std::uint8_t> 
   if (!body.empty()) {
     std::memcpy(out.data() + start + sizeof head, body.data(), body.size());
   }
-}
-
-void append_filters(Buffer& out, std::span<const SocketCanFilter> filters) {
-  Buffer body(filters.size_bytes());
-  if (!filters.empty()) {
-    std::memcpy(body.data(), filters.data(), filters.size_bytes());
-  }
-  detail::append(out, RecordType::filters, body);
-}
-
-std::vector<SocketCanFilter> filters_of(const Record& record) {
-  std::vector<SocketCanFilter> filters(record.body.size() / sizeof(SocketCanFilter));
-  if (!filters.empty()) {
-    std::memcpy(filters.data(), record.body.data(), record.body.size());
-  }
-  return filters;
 }
 
 Split take_record(std::span<const std::uint8_t>& bytes, Record& record) noexcept {

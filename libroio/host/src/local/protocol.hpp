@@ -3,14 +3,16 @@
 ///
 ///   head: body size (16 bits), type (8), 0 (8); then the body, a fixed struct a type.
 ///
-///   client -> hub   hello once; then filters (nothing is delivered before), frame, consumed
-///   hub -> client   welcome or refused once; then deliver, done
+///   client -> hub   hello once; then frame, go_on
+///   hub -> client   welcome or refused once, and nothing more
+///
+/// What a client receives it reads from the bus's memory (memory.hpp), and its filters and how far
+/// it has read it writes there.
 ///
 /// Frames are numbered by their sender, separately for each lane, from 1 on for the life of the
-/// client, across hubs. A sender keeps a frame until the hub reports it done, and offers it again
-/// to the next hub; a receiver leaves out what it has had. A hub repeats what it has carried so far
-/// to clients that come over from another hub, once it knows their filters. So a hub that dies
-/// loses nothing and doubles nothing.
+/// client, across hubs. A sender keeps a frame until it is in the log, and offers it again to the
+/// next hub, which leaves out what is there already. So a hub that dies loses nothing and doubles
+/// nothing.
 #ifndef ROIO_LOCAL_PROTOCOL_HPP
 #define ROIO_LOCAL_PROTOCOL_HPP
 
@@ -28,7 +30,7 @@
 
 namespace roio::local {
 
-inline constexpr std::uint16_t protocol_version = 2;
+inline constexpr std::uint16_t protocol_version = 3;
 inline constexpr std::array<char, 4> magic = {'R', 'O', 'I', 'O'};
 inline constexpr std::size_t max_filters = 512;  // as many as SocketCAN takes
 
@@ -37,23 +39,21 @@ std::size_t lane_of(const Frame& frame) noexcept;
 
 enum class RecordType : std::uint8_t {
   hello = 1,
-  filters = 2,
   frame = 3,
-  consumed = 4,
   welcome = 5,
   refused = 6,
-  deliver = 7,
-  done = 8,
+  go_on = 9,
 };
 
+/// Of the same size in every version, so that an old hub can say what is wrong.
 struct Hello {
   static constexpr RecordType type = RecordType::hello;
   std::array<char, 4> magic;
   std::uint16_t version;
-  std::uint16_t rejoining;    // 1: was on this bus under another hub
-  std::uint64_t client;       // random, the same at every hub
+  std::uint16_t zero;
+  std::uint64_t client;       // random, not 0, the same at every hub
   std::uint32_t bitrate_bps;  // 0: whatever the bus runs at
-  std::uint32_t zero;
+  std::uint32_t zero_too;
 };
 
 struct WireFrame {
@@ -69,38 +69,26 @@ struct OfferedFrame {
   WireFrame frame;
 };
 
-/// How many delivered frames the program has taken, on this connection.
-struct Consumed {
-  static constexpr RecordType type = RecordType::consumed;
-  std::uint64_t count;
+/// The bus waits for this reader, which has read on since.
+struct GoOn {
+  static constexpr RecordType type = RecordType::go_on;
+  std::uint32_t zero;
 };
 
-/// Comes with the descriptor of the client's HubCounters.
+/// Comes with the descriptor of the flag that wakes the client.
 struct Welcome {
   static constexpr RecordType type = RecordType::welcome;
+  std::uint64_t identity;     // of the memory that this bus has
+  std::uint32_t slot;         // the client's in it
   std::uint32_t bitrate_bps;  // 0: as fast as it goes
-  std::uint32_t window;       // frames that may wait for their done, in each lane
+  std::uint32_t window;       // frames that may be on their way to the log, in each lane
+  std::uint32_t fresh;        // 1: it has not had that slot before
 };
 
 struct Refused {
   static constexpr RecordType type = RecordType::refused;
   std::uint32_t errc;
   std::uint32_t bitrate_bps;
-};
-
-struct Deliver {
-  static constexpr RecordType type = RecordType::deliver;
-  std::uint64_t index;  // counts what was due to this client on this connection; a gap was dropped
-  std::uint64_t sender;
-  std::uint64_t sequence;
-  std::int64_t time_ns;  // since 1970
-  WireFrame frame;
-};
-
-/// All frames up to these have left the hub.
-struct Done {
-  static constexpr RecordType type = RecordType::done;
-  std::array<std::uint64_t, lane_count> sequence;
 };
 
 struct RecordHead {
@@ -127,7 +115,6 @@ void append_record(Buffer& out, const Body& body) {
   std::memcpy(bytes.data(), &body, sizeof(Body));
   detail::append(out, Body::type, bytes);
 }
-void append_filters(Buffer& out, std::span<const SocketCanFilter> filters);
 
 struct Record {
   RecordType type;
@@ -140,7 +127,6 @@ struct Record {
     return value;
   }
 };
-std::vector<SocketCanFilter> filters_of(const Record& record);
 
 enum class Split : std::uint8_t { record, incomplete, malformed };
 
@@ -150,9 +136,7 @@ enum class Split : std::uint8_t { record, incomplete, malformed };
 Split take_record(std::span<const std::uint8_t>& bytes, Record& record) noexcept;
 
 /// The longest record, head included.
-inline constexpr std::size_t max_record =
-    sizeof(RecordHead) + max_filters * sizeof(SocketCanFilter);
-inline constexpr std::size_t deliver_size = sizeof(RecordHead) + sizeof(Deliver);
+inline constexpr std::size_t max_record = sizeof(RecordHead) + sizeof(OfferedFrame);
 
 }  // namespace roio::local
 

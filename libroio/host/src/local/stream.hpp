@@ -27,6 +27,8 @@ class Stream {
   };
   /// Reads once into the buffer that take() works on.
   Read read();
+  /// Whether the last read() took as much as there is room for: then there may be more.
+  [[nodiscard]] bool filled() const { return in_end_ == in_.size(); }
   /// The next record that has come in whole; its body is valid until read().
   Split take(Record& record);
 

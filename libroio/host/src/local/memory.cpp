@@ -1,0 +1,106 @@
+#include "local/memory.hpp"
+
+#include <fcntl.h>
+#include <sys/mman.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <random>
+#include <system_error>
+#include <utility>
+
+namespace roio::local {
+namespace {
+
+// "ROIOBUS" and the number of this layout.
+constexpr std::uint64_t layout_magic = UINT64_C(0x5355424F494F5203);
+
+[[noreturn]] void fail(const char* what) {
+  throw std::system_error(errno, std::generic_category(), what);
+}
+
+bool has_size(int fd) {
+  struct stat status {};
+  return ::fstat(fd, &status) == 0 && status.st_size == static_cast<off_t>(sizeof(Memory));
+}
+
+}  // namespace
+
+Mapping::Mapping(int fd, std::size_t offset, std::size_t size, bool writable) {
+  const auto page = static_cast<std::size_t>(::sysconf(_SC_PAGESIZE));
+  const std::size_t before = offset % page;
+  length_ = before + size;
+  start_ = ::mmap(nullptr, length_, writable ? PROT_READ | PROT_WRITE : PROT_READ, MAP_SHARED, fd,
+                  static_cast<off_t>(offset - before));
+  if (start_ == MAP_FAILED) {
+    start_ = nullptr;
+    fail("the bus's memory");
+  }
+  at_ = static_cast<char*>(start_) + before;
+}
+
+Mapping::Mapping(Mapping&& other) noexcept
+    : start_(std::exchange(other.start_, nullptr)), length_(other.length_), at_(other.at_) {}
+
+Mapping& Mapping::operator=(Mapping&& other) noexcept {
+  std::swap(start_, other.start_);
+  std::swap(length_, other.length_);
+  std::swap(at_, other.at_);
+  return *this;
+}
+
+Mapping::~Mapping() {
+  if (start_ != nullptr) {
+    ::munmap(start_, length_);
+  }
+}
+
+HubMemory::HubMemory(int lock_fd) {
+  if (!has_size(lock_fd)) {
+    // Of another version, or none. All room is taken now: where there is none, a write into the
+    // mapping would end the process.
+    if (::ftruncate(lock_fd, 0) != 0) {
+      fail("the bus's memory");
+    }
+    if (const int error = ::posix_fallocate(lock_fd, 0, sizeof(Memory)); error != 0) {
+      errno = error;
+      fail("the bus's memory");
+    }
+  }
+  mapping_ = Mapping(lock_fd, 0, sizeof(Memory), true);
+}
+
+bool HubMemory::is_set_up() const {
+  return (*this)->header.magic.load(std::memory_order_acquire) == layout_magic;
+}
+
+void HubMemory::set_up(std::uint32_t bitrate_bps) {
+  Header& header = (*this)->header;
+  header.magic.store(0, std::memory_order_relaxed);
+  for (Slot& slot : (*this)->slots) {
+    slot.client.store(0, std::memory_order_relaxed);
+  }
+  std::random_device device;
+  header.identity.store((std::uint64_t{device()} << 32) | device(), std::memory_order_relaxed);
+  header.hubs.store(0, std::memory_order_relaxed);
+  header.bitrate_bps.store(bitrate_bps, std::memory_order_relaxed);
+  header.head.store(0, std::memory_order_relaxed);
+  header.magic.store(layout_magic, std::memory_order_release);
+}
+
+ClientMemory::ClientMemory(int lock_fd, std::size_t slot)
+    : all_(lock_fd, 0, sizeof(Memory), false),
+      own_(lock_fd, offsetof(Memory, slots) + slot * sizeof(Slot), sizeof(Slot), true) {}
+
+bool is_memory_of(int lock_fd, std::uint64_t identity) {
+  if (!has_size(lock_fd)) {
+    return false;
+  }
+  const Mapping mapping(lock_fd, 0, sizeof(Header), false);
+  const auto& header = *static_cast<const Header*>(mapping.at());
+  return header.magic.load(std::memory_order_acquire) == layout_magic &&
+         header.identity.load(std::memory_order_relaxed) == identity;
+}
+
+}  // namespace roio::local
