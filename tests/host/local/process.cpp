@@ -55,6 +55,14 @@ Peer::~Peer() {
   kill();
 }
 
+void Peer::tell(const std::string& line) {
+  const std::string bytes = line + "\n";
+  if (::write(input_.get(), bytes.data(), bytes.size()) != static_cast<ssize_t>(bytes.size())) {
+    throw std::runtime_error("write");
+  }
+  input_.reset();
+}
+
 void Peer::signal(int number) const {
   ::kill(pid_, number);
 }

@@ -20,7 +20,10 @@ class Peer {
   /// The next line it prints, without its end; "(end)" when it prints no more, "(silent)" when
   /// there is none in 60 s.
   std::string line();
+  /// Tells it a line, and that it is the last.
+  void tell(const std::string& line);
   void signal(int number) const;
+  [[nodiscard]] pid_t pid() const { return pid_; }
   /// Ends it if need be, and waits for that.
   void kill();
 
