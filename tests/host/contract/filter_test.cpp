@@ -126,7 +126,9 @@ TEST_P(Filters, ASendOnlyBusReceivesOnceItHasFilters) {
   const auto bus = join({.send_only = true});
   send_all(*bus, {numbered(1)});
   EXPECT_EQ(frames_of(receive_exactly(*peer, 1)), std::vector{numbered(1)});
+  const auto witness = join();
   send_all(*peer, {numbered(2)});
+  EXPECT_EQ(frames_of(receive_exactly(*witness, 1)), std::vector{numbered(2)}) << "it has passed";
   expect_silence(*bus);
   bus->set_filters(std::array{SocketCanFilter{0, 0}});
   send_all(*peer, {numbered(3)});

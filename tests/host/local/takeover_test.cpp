@@ -7,6 +7,8 @@
 #include <roio.hpp>
 #include <thread>
 
+#include "local/hub.hpp"
+#include "local/presence.hpp"
 #include "process.hpp"
 
 namespace roio {
@@ -156,6 +158,43 @@ TEST(TakeoverDetails, WhatAReaderStoppedOverTwoHubsLosesIsToldExactly) {
   EXPECT_EQ(account.missing, account.lost);
   EXPECT_GT(account.lost, 0U);
   EXPECT_EQ(account.wrong, 0U);
+}
+
+// What a hub leaves behind that was killed between any two of its instructions.
+class LeftBehind : public ::testing::Test {
+ protected:
+  static constexpr std::uint64_t client = 4711;
+
+  void SetUp() override {
+    memory_.set_up(0);
+    memory_->slots.at(0).client = client;
+    memory_->header.head = local::log_size + 1000;
+  }
+
+  void store(std::uint64_t number, std::uint64_t sequence) {
+    local::store(local::entry_of(*memory_, number), {client, sequence, normal_lane, 0, {}});
+  }
+  // As the next hub finds it.
+  std::uint64_t done_after_takeover() {
+    const local::Hub next(std::move(seat_), std::nullopt);
+    return memory_->slots.at(0).done.at(normal_lane);
+  }
+
+  const std::string name_ = unique_name();
+  local::HubSeat seat_ = local::Place(name_).claim().value();
+  local::HubMemory memory_{seat_.lock_fd()};
+  local::Presence presence_{local::folders().front() + "/" + name_ + ".lock", client};
+};
+
+TEST_F(LeftBehind, AFrameThatIsInTheLogIsDoneThoughNobodyWasTold) {
+  store(memory_->header.head, 7);
+  EXPECT_EQ(done_after_takeover(), 7U);
+}
+
+TEST_F(LeftBehind, AFrameThatWasOnItsWayIntoTheLogIsNot) {
+  store(memory_->header.head, 7);
+  store(memory_->header.head + 1, 8);
+  EXPECT_EQ(done_after_takeover(), 7U);
 }
 
 }  // namespace

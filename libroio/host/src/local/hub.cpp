@@ -7,6 +7,7 @@
 #include <new>
 #include <roio/error.hpp>
 #include <roio/parts/thread.hpp>
+#include <unordered_map>
 #include <utility>
 
 #include "local/presence.hpp"
@@ -74,13 +75,19 @@ bool Hub::take_over() {
   return any;
 }
 
-// The last hub may have died after it had carried a frame and before it had told the sender.
+// The last hub may have died after it had carried a frame and before it had told the sender. Or while
+// it was writing the next one, in the place of the oldest that is kept: that one is left out.
 void Hub::note_done_from_log() {
+  std::unordered_map<std::uint64_t, Slot*> slots;
+  for (Slot& slot : memory_->slots) {
+    slots.emplace(slot.client.load(std::memory_order_relaxed), &slot);
+  }
   const std::uint64_t head = memory_->header.head.load(std::memory_order_relaxed);
-  for (std::uint64_t i = head > log_size ? head - log_size + 1 : 1; i <= head; ++i) {
+  for (std::uint64_t i = head >= log_size ? head - log_size + 2 : 1; i <= head; ++i) {
     const Carried carried = load(entry_of(*memory_, i));
-    if (const auto slot = slot_of(carried.sender); slot && carried.lane < lane_count) {
-      auto& done = memory_->slots.at(*slot).done.at(carried.lane);
+    const auto sender = slots.find(carried.sender);
+    if (sender != slots.end() && carried.lane < lane_count) {
+      auto& done = sender->second->done.at(carried.lane);
       done.store(std::max(done.load(std::memory_order_relaxed), carried.sequence),
                  std::memory_order_relaxed);
     }
