@@ -47,6 +47,20 @@ TEST(InputLine, OthersAreRefusedWithWhatWasExpected) {
     EXPECT_EQ(frame.error().message, expected);
   }
 }
+// To the JSON parser a zero byte is the end of the text, and a byte order mark nothing at all.
+TEST(InputLine, AZeroByteOrAByteOrderMarkIsRefused) {
+  const std::string message =
+      R"({"type":"Roio","isBroadcast":true,"subnet":0,"messageLength":0,"data":[]})";
+  const std::string other = R"({"type":"CAN","kind":"standard","id":291,"length":0,"data":[]})";
+  const std::string news = R"({"type":"lost","frames":12})";
+  for (const std::string& line :
+       {message, other, news, std::string("123#11"), std::string("(1.0) can0 123#11")}) {
+    EXPECT_EQ(frame_of(line + '\0' + "GARBAGE"),
+              "a zero byte at byte " + std::to_string(line.size()) + "; expected text");
+    EXPECT_EQ(frame_of("\xEF\xBB\xBF" + line),
+              "begins with a byte order mark; expected text without one");
+  }
+}
 TEST(InputLine, AFrameAsCansendTakesItIsTaken) {
   EXPECT_EQ(frame_of("1000400A#5A.2D.00"), "1000400A#5A2D00");
   EXPECT_EQ(frame_of(" 123#R4 \r"), "123#R4");

@@ -14,6 +14,7 @@ namespace roio::cli {
 namespace {
 
 constexpr std::string_view white_space = " \t\r\n";
+constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";
 
 // An error report is none to be sent.
 std::optional<Frame> sendable(const Frame& frame) {
@@ -36,6 +37,23 @@ Parsed<std::optional<Frame>> from_frame(std::string_view text) {
   return sendable(*frame);
 }
 
+// What is wrong with a line of any kind. A zero byte ends a text for some parsers, which then take
+// what stands before it.
+std::optional<ParseError> check_line(std::string_view line) {
+  if (line.size() > LineReader::max_line) {
+    return ParseError{
+        "expected a line of at most " + std::to_string(LineReader::max_line) + " bytes", 0};
+  }
+  const std::size_t zero = line.find('\0');
+  if (zero != std::string_view::npos) {
+    return ParseError{"a zero byte at byte " + std::to_string(zero) + "; expected text", zero};
+  }
+  if (line.starts_with(byte_order_mark)) {
+    return ParseError{"begins with a byte order mark; expected text without one", 0};
+  }
+  return std::nullopt;
+}
+
 }  // namespace
 
 bool is_blank(std::string_view line) noexcept {
@@ -43,9 +61,8 @@ bool is_blank(std::string_view line) noexcept {
 }
 
 Parsed<std::optional<Frame>> parse_input_line(std::string_view line, Address default_source) {
-  if (line.size() > LineReader::max_line) {
-    return ParseError{
-        "expected a line of at most " + std::to_string(LineReader::max_line) + " bytes", 0};
+  if (const auto error = check_line(line)) {
+    return *error;
   }
   const std::size_t first = line.find_first_not_of(white_space);
   if (first != std::string_view::npos && line[first] == '{') {
