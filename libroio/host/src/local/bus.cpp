@@ -10,6 +10,7 @@
 #include <mutex>
 #include <roio/error.hpp>
 #include <roio/parts/frame_check.hpp>
+#include <roio/parts/lanes.hpp>
 #include <roio/parts/queued_calls.hpp>
 #include <roio/parts/receive_queue.hpp>
 #include <roio/parts/thread.hpp>
@@ -37,7 +38,9 @@ class LocalBus final : public Bus {
  public:
   LocalBus(const std::string& bus_name, std::optional<std::uint32_t> bitrate_bps,
            const OpenOptions& options)
-      : name_("local:" + bus_name), connector_(bus_name, bitrate_bps, !options.join_only) {
+      : name_("local:" + bus_name),
+        connector_(bus_name, bitrate_bps, !options.join_only),
+        order_(options.in_order) {
     if (!options.send_only) {
       filters_ = {SocketCanFilter{0, 0}};
     }
@@ -106,6 +109,7 @@ class LocalBus final : public Bus {
   std::array<std::deque<OfferedFrame>, lane_count> sent_;  // not reported done yet
   std::array<std::size_t, lane_count> offered_{};          // of sent_, to this hub
   std::array<std::uint64_t, lane_count> sequence_{};
+  LaneOrder order_;
   // The hub sees to it that it does not grow without end.
   ReceiveQueue queue_{std::numeric_limits<std::size_t>::max()};
   std::size_t queued_before_ = 0;  // of queue_, from hubs before this one
@@ -139,7 +143,8 @@ Transfer LocalBus::send(std::span<const Frame> frames, Timeout timeout) {
       });
 }
 
-// As many as fit in their lanes' windows, up to the first that does not.
+// As many as fit in their lanes' windows, up to the first that does not, or whose turn has not
+// come.
 std::size_t LocalBus::offer(std::span<const Frame> frames) {
   if (!connection_) {
     return 0;
@@ -148,9 +153,11 @@ std::size_t LocalBus::offer(std::span<const Frame> frames) {
   std::size_t count = 0;
   for (const Frame& frame : frames) {
     const std::size_t lane = lane_of(frame);
-    if (sent_.at(lane).size() >= connection_->welcome.window) {
+    if (sent_.at(lane).size() >= connection_->welcome.window ||
+        !order_.admits(lane, unacknowledged() == 0)) {
       break;
     }
+    order_.accepted(lane);
     sent_.at(lane).push_back({++sequence_.at(lane), to_wire(frame)});
     append_record(stream.out(), sent_.at(lane).back());
     ++offered_.at(lane);
