@@ -4,7 +4,8 @@
 #include <utility>
 
 namespace roio::sim {
-Exchange::Exchange(const OpenOptions& options) : error_frames_(options.error_frames) {
+Exchange::Exchange(const OpenOptions& options)
+    : error_frames_(options.error_frames), order_(options.in_order) {
   if (!options.send_only) {
     filters_ = {SocketCanFilter{0, 0}};
   }
@@ -18,11 +19,12 @@ Exchange::Offered Exchange::offer(std::span<const Frame> frames, SimTime since) 
   const bool open = !closed_ && state_ != BusState::absent;
   while (open && offered.count < frames.size()) {
     const Frame& frame = frames[offered.count];
-    auto& lane = lanes_.at(lane_in_driver(frame));
-    if (lane.size() >= lane_capacity) {
+    const std::size_t lane = lane_in_driver(frame);
+    if (lanes_.at(lane).size() >= lane_capacity || !order_.admits(lane, all_settled())) {
       break;
     }
-    lane.push_back({frame, since});
+    order_.accepted(lane);
+    lanes_.at(lane).push_back({frame, since});
     ++offered.count;
   }
   statistics_.sent += offered.count;
@@ -94,9 +96,7 @@ void Exchange::handed_over(std::size_t lane) {
   const std::lock_guard lock(mutex_);
   lanes_.at(lane).pop_front();
   ++in_chip_;
-  if (std::exchange(sender_waits_, false)) {
-    sendable_.set();
-  }
+  wake_sender();
 }
 
 void Exchange::settled(bool sent) {
@@ -105,6 +105,13 @@ void Exchange::settled(bool sent) {
   statistics_.unsent += sent ? 0 : 1;
   if (all_settled()) {
     settled_.notify_all();
+    wake_sender();
+  }
+}
+
+void Exchange::wake_sender() {
+  if (std::exchange(sender_waits_, false)) {
+    sendable_.set();
   }
 }
 
@@ -149,6 +156,7 @@ void Exchange::abandon_locked() {
     statistics_.unsent += lane.size();
     lane.clear();
   }
+  wake_sender();
 }
 
 void Exchange::end() {

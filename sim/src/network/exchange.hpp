@@ -34,8 +34,8 @@ class Exchange {
     std::size_t count;  ///< The first so many were accepted.
     bool wake;          ///< The simulation did not know yet that frames wait.
   };
-  /// Accepts frames as long as their lanes have room, up to the first that has none. If not all
-  /// were, sendable() is set once there is room.
+  /// Accepts frames as long as their lanes have room and it is their turn, up to the first of which
+  /// that is not so. If not all were, sendable() is set once it is.
   /// @param since when in simulated time this is: the simulation may be a bit behind and must not
   ///        send them earlier.
   Offered offer(std::span<const Frame> frames, SimTime since);
@@ -84,6 +84,7 @@ class Exchange {
   // The caller holds mutex_ for these.
   [[nodiscard]] bool all_settled() const;
   void abandon_locked();
+  void wake_sender();
   void enqueue(const Frame& frame, Timestamp time);
 
   EventFlag sendable_;
@@ -93,6 +94,7 @@ class Exchange {
   std::condition_variable settled_;
   std::array<std::deque<Waiting>, lane_count> lanes_;
   std::size_t in_chip_ = 0;
+  LaneOrder order_;
   bool sender_waits_ = false;
   bool closed_ = false;
   std::vector<SocketCanFilter> filters_;

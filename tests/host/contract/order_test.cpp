@@ -96,6 +96,28 @@ TEST_P(Order, OfOneSenderIsKept) {
   expect_silence(*receiver);
 }
 
+/// Frames of all kinds and both priorities, as a log of another system's bus has them.
+std::vector<Frame> of_both_priorities(std::uint32_t count) {
+  std::vector<Frame> frames = of_one_priority(count);
+  for (std::uint32_t i = 0; i < count; ++i) {
+    if (frames[i].kind == FrameKind::extended && (i * 0x9E3779B1) >> 31 != 0) {
+      frames[i].id &= 0x0FFFFFFF;
+    }
+  }
+  return frames;
+}
+
+TEST_P(Order, OfBothPrioritiesIsKeptWhenAskedFor) {
+  const auto sender = join({.send_only = true, .in_order = true});
+  const auto receiver = join();
+  const std::vector<Frame> frames = of_both_priorities(1'000);
+  Pace pace(1, window);
+  auto sending = in_thread([&] { send_paced(*sender, frames, 50, pace); });
+  EXPECT_EQ(receive_paced(*receiver, frames.size(), 0, pace), frames);
+  result_of(sending);
+  expect_silence(*receiver);
+}
+
 std::vector<Frame> from_sender(const std::vector<Frame>& frames, std::uint32_t source) {
   std::vector<Frame> result;
   std::copy_if(frames.begin(), frames.end(), std::back_inserter(result),

@@ -79,7 +79,7 @@ TEST_F(HostileClient, GarbageInsteadOfAGreetingIsCutOff) {
 
 TEST_F(HostileClient, AFrameBeforeTheGreetingIsCutOff) {
   Buffer bytes;
-  append_record(bytes, OfferedFrame{1, to_wire(some_frame)});
+  append_record(bytes, OfferedFrame{1, normal_lane, 0, to_wire(some_frame)});
   send_raw(socket_, bytes);
   EXPECT_TRUE(is_cut_off(socket_));
   Received received{};
@@ -97,7 +97,7 @@ TEST_F(HostileClient, GarbageAfterTheGreetingIsCutOff) {
 
 TEST_F(HostileClient, HalfARecordAndThenNothing) {
   Buffer bytes = hello();
-  append_record(bytes, OfferedFrame{1, to_wire(some_frame)});
+  append_record(bytes, OfferedFrame{1, normal_lane, 0, to_wire(some_frame)});
   bytes.resize(bytes.size() - 5);
   send_raw(socket_, bytes);
   expect_others_unharmed();
@@ -105,7 +105,7 @@ TEST_F(HostileClient, HalfARecordAndThenNothing) {
 
 TEST_F(HostileClient, HalfARecordAndThenGone) {
   Buffer bytes = hello();
-  append_record(bytes, OfferedFrame{1, to_wire(some_frame)});
+  append_record(bytes, OfferedFrame{1, normal_lane, 0, to_wire(some_frame)});
   bytes.resize(bytes.size() - 5);
   send_raw(socket_, bytes);
   socket_.reset();
@@ -114,9 +114,17 @@ TEST_F(HostileClient, HalfARecordAndThenGone) {
 
 TEST_F(HostileClient, AFrameThatNoBusCarriesIsCutOff) {
   Buffer bytes = hello();
-  OfferedFrame offered{1, to_wire(some_frame)};
+  OfferedFrame offered{1, normal_lane, 0, to_wire(some_frame)};
   offered.frame.length = 9;
   append_record(bytes, offered);
+  send_raw(socket_, bytes);
+  EXPECT_TRUE(is_cut_off(socket_));
+  expect_others_unharmed();
+}
+
+TEST_F(HostileClient, AFrameInNoLaneIsCutOff) {
+  Buffer bytes = hello();
+  append_record(bytes, OfferedFrame{1, lane_count, 0, to_wire(some_frame)});
   send_raw(socket_, bytes);
   EXPECT_TRUE(is_cut_off(socket_));
   expect_others_unharmed();

@@ -30,7 +30,7 @@ class AnOutbox : public ::testing::Test {
     outbox_.settle(*slot_);
   }
 
-  Outbox outbox_;
+  Outbox outbox_{false};
   Buffer out_;
   std::unique_ptr<Slot> slot_ = std::make_unique<Slot>();
 };
@@ -73,6 +73,15 @@ TEST_F(AnOutbox, OffersNoMoreAgainThanMayBeOnTheirWay) {
   done(normal_lane, 1);
   EXPECT_EQ(outbox_.offer_again(again), 1U);
   EXPECT_EQ(sequences(again), (std::vector<std::uint64_t>{1, 2, 3}));
+}
+
+TEST(AnOutboxInOrder, HasOneLane) {
+  Outbox outbox(true);
+  outbox.begin(3);
+  Buffer out;
+  ASSERT_TRUE(outbox.offer(normal, out));
+  ASSERT_TRUE(outbox.offer(urgent, out));
+  EXPECT_EQ(sequences(out), (std::vector<std::uint64_t>{1, 2}));
 }
 
 }  // namespace

@@ -15,7 +15,7 @@ Buffer bytes_of(const OfferedFrame& offered) {
 }
 
 TEST(LocalRecords, FrameComesBackAsItWas) {
-  const Buffer bytes = bytes_of({7, to_wire(some_frame)});
+  const Buffer bytes = bytes_of({7, normal_lane, 0, to_wire(some_frame)});
   std::span<const std::uint8_t> rest = bytes;
   Record record{};
   ASSERT_EQ(take_record(rest, record), Split::record);
@@ -31,7 +31,7 @@ TEST(LocalRecords, FrameComesBackAsItWas) {
 }
 
 TEST(LocalRecords, EveryBeginningOfARecordIsIncompleteAndTakesNothing) {
-  const Buffer bytes = bytes_of({7, to_wire(some_frame)});
+  const Buffer bytes = bytes_of({7, normal_lane, 0, to_wire(some_frame)});
   for (std::size_t size = 0; size < bytes.size(); ++size) {
     std::span<const std::uint8_t> rest = std::span(bytes).first(size);
     Record record{};

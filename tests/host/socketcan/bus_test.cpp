@@ -237,6 +237,30 @@ TEST_F(SocketCanBus, BatchesLargerThanOneSystemCall) {
   }
 }
 
+TEST_F(SocketCanBus, CanFdFramesAreCountedAndNotReturned) {
+  const auto bus = open("can0");
+  canfd_frame fd{};
+  fd.can_id = 0x123;
+  fd.len = 8;  // as a classic frame's could be
+  kernel_.put(raw(1));
+  kernel_.put(fd);
+  fd.len = CANFD_MAX_DLEN;
+  kernel_.put(fd);
+  kernel_.put(raw(2));
+  std::array<Received, 4> received{};
+  const Transfer transfer = bus->receive(received, patience);
+  ASSERT_EQ(transfer.count, 2U);
+  EXPECT_EQ(received[0].frame.id, 1U);
+  EXPECT_EQ(received[1].frame.id, 2U);
+  EXPECT_EQ(received[1].lost_before, 0U);
+  EXPECT_EQ(bus->statistics().received, 2U);
+  EXPECT_EQ(bus->statistics().fd_frames, 2U);
+  // Alone, they end no wait.
+  kernel_.put(fd);
+  EXPECT_EQ(bus->receive(received, no_wait).result, Result::timeout);
+  EXPECT_EQ(bus->statistics().fd_frames, 3U);
+}
+
 TEST_F(SocketCanBus, TheDropCountOutlivesTheKernels32Bits) {
   const auto bus = open("can0");
   for (const std::uint32_t drops : {0xFFFFFFF0U, 0x10U, 0x20U}) {

@@ -112,11 +112,29 @@ int FakeKernel::last_wire() {
   return last_;
 }
 
-void FakeKernel::put(const can_frame& frame) {
+void FakeKernel::put_bytes(const void* frame, std::size_t size) {
   const int wire = last_wire();
-  while (::send(wire, &frame, sizeof frame, MSG_DONTWAIT | MSG_NOSIGNAL) < 0) {
+  while (::send(wire, frame, size, MSG_DONTWAIT | MSG_NOSIGNAL) < 0) {
     wait_for(wire, POLLOUT);
   }
+}
+
+void FakeKernel::put(const canfd_frame& frame) {
+  bool taken = false;
+  {
+    const std::lock_guard lock(mutex_);
+    for (const auto& [fd, socket] : sockets_) {
+      taken = taken || (socket.wire == last_ && socket.takes_fd);
+    }
+  }
+  if (taken) {
+    put_bytes(&frame, sizeof frame);
+  }
+}
+
+void FakeKernel::take_fd_frames(int fd) {
+  const std::lock_guard lock(mutex_);
+  sockets_[fd].takes_fd = true;
 }
 
 can_frame FakeKernel::get() {
@@ -138,7 +156,7 @@ int FakeKernel::open_socket(bool news) {
   if (::socketpair(AF_UNIX, SOCK_DGRAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0, ends.data()) != 0) {
     return -1;
   }
-  sockets_[ends[0]] = Socket{ends[1], news, 0};
+  sockets_[ends[0]] = Socket{ends[1], news};
   if (!news) {
     last_ = ends[1];
   }
@@ -246,6 +264,9 @@ int getsockname(int fd, sockaddr* address, socklen_t* length) noexcept {
 
 int setsockopt(int fd, int level, int option, const void* value, socklen_t length) noexcept {
   static const auto next = real<int (*)(int, int, int, const void*, socklen_t)>("setsockopt");
+  if (is_ours(fd) && level == SOL_CAN_RAW && option == CAN_RAW_FD_FRAMES) {
+    FakeKernel::current()->take_fd_frames(fd);
+  }
   // A small send buffer would make a Unix socket full at moments that no test has chosen.
   if (is_ours(fd) && (level == SOL_CAN_RAW || option == SO_SNDBUF)) {
     return 0;

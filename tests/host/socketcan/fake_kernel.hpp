@@ -51,7 +51,9 @@ class FakeKernel {
   void set_drops(std::uint32_t drops);
 
   /// Puts frames on the bus for the socket made last; waits while its queue is full.
-  void put(const can_frame& frame);
+  void put(const can_frame& frame) { put_bytes(&frame, sizeof frame); }
+  /// A CAN FD frame, for a socket that has asked for them: to others the kernel gives none.
+  void put(const canfd_frame& frame);
   /// The next frame that the socket made last has sent; none within 20 s ends the program.
   can_frame get();
 
@@ -60,11 +62,13 @@ class FakeKernel {
     int wire = -1;      // the other end
     bool news = false;  // of interfaces, not CAN
     int bound = 0;      // interface index
+    bool takes_fd = false;
   };
   static FakeKernel* current();
   int open_socket(bool news);
   bool owns(int fd);
   void bind(int fd, int index);
+  void take_fd_frames(int fd);
   int bound(int fd);
   std::optional<FakeInterface> find(const std::string& name);
   /// What the answers given say, or the state of the interface that the socket is bound to.
@@ -75,6 +79,7 @@ class FakeKernel {
  private:
   void announce();
   int last_wire();
+  void put_bytes(const void* frame, std::size_t size);
 
   std::mutex mutex_;
   std::map<int, Socket> sockets_;

@@ -113,6 +113,31 @@ TEST(CandumpLog, ReadsWhatCanplayerDoes) {
   }
 }
 
+TEST(CandumpLog, ATimeThatNobodyNeedsMayBeOfAnyForm) {
+  for (const auto& [time, ns] : {
+           std::pair{"1.5", std::int64_t{1500000000}},
+           std::pair{"9223372036.854775807", INT64_MAX},
+           std::pair{"9223372037.0", std::int64_t{0}},
+           std::pair{"-0.250000", std::int64_t{0}},
+           std::pair{"7", std::int64_t{0}},
+           std::pair{"0.1234567890", std::int64_t{0}},
+           std::pair{"", std::int64_t{0}},
+           std::pair{"nan", std::int64_t{0}},
+           std::pair{"2015-07-10 08:17:32.249713", std::int64_t{0}},
+       }) {
+    const std::string line = std::string("(") + time + ")  can0 123#1122 R\r\n";
+    const auto parsed = parse_log_line_of_any_time(line);
+    ASSERT_EQ(verdict(parsed), "ok") << line;
+    EXPECT_EQ(parsed->time, at_ns(ns)) << line;
+    EXPECT_EQ(parsed->interface_name, "can0") << line;
+    EXPECT_EQ(to_text(parsed->frame), "123#1122") << line;
+  }
+  for (const char* line : {"", "1.5 can0 123#", "(1.5 can0 123#", "(1.5)can0 123#", "(1.5", "(7)",
+                           "(7) can0", "(7) can0 123"}) {
+    EXPECT_FALSE(parse_log_line_of_any_time(line).ok()) << line;
+  }
+}
+
 void expect_refused(const Refusal& row) {
   const auto parsed = parse_log_line(row.text);
   ASSERT_EQ(verdict(parsed), "log line " + row.message) << row.why;

@@ -186,6 +186,11 @@ TEST_F(ForwarderTest, NamesEveryPlaceOfALoss) {
             "by far); the controller of near lost others, uncounted, 1 time");
 }
 
+TEST_F(ForwarderTest, TellsOfFramesThatCannotBeHandedOn) {
+  near_.set_losses({.fd_frames = 12});
+  EXPECT_EQ(end(), "near to far: 0 frames, 0 lost; 12 CAN FD frames of near not handed on");
+}
+
 TEST_F(ForwarderTest, EndsWithWhatABusThrew) {
   far_.breaks();
   near_.give(1);

@@ -19,7 +19,15 @@ std::string frame_of(std::string_view line) {
   if (!frame) {
     return frame.error().message;
   }
-  return *frame ? to_text(**frame) : "passed over";
+  switch (frame->kind) {
+    case InputLine::Kind::frame:
+      return to_text(frame->frame);
+    case InputLine::Kind::news:
+      return "passed over";
+    case InputLine::Kind::comment:
+      break;
+  }
+  return "comment";
 }
 
 TEST(InputLine, JsonWithoutASourceGetsTheSendersOwn) {
@@ -41,10 +49,24 @@ TEST(InputLine, OthersAreRefusedWithWhatWasExpected) {
   const char* const expected =
       "expected a JSON message {\"type\":\"Roio\",...}, a frame ID#DATA, or a line of a log "
       "\"(TIME) BUS ID#DATA\"";
-  for (const char* line : {"#123", " # note", "[]", "0.2 5A", " "}) {
+  for (const char* line : {"[]", "0.2 5A", " ", "/ note", "-- note"}) {
     const auto frame = parse_input_line(line, from);
     ASSERT_FALSE(frame.ok()) << line;
     EXPECT_EQ(frame.error().message, expected);
+  }
+}
+// To the JSON parser a zero byte is the end of the text, and a byte order mark nothing at all.
+TEST(InputLine, AZeroByteOrAByteOrderMarkIsRefused) {
+  const std::string message =
+      R"({"type":"Roio","isBroadcast":true,"subnet":0,"messageLength":0,"data":[]})";
+  const std::string other = R"({"type":"CAN","kind":"standard","id":291,"length":0,"data":[]})";
+  const std::string news = R"({"type":"lost","frames":12})";
+  for (const std::string& line :
+       {message, other, news, std::string("123#11"), std::string("(1.0) can0 123#11")}) {
+    EXPECT_EQ(frame_of(line + '\0' + "GARBAGE"),
+              "a zero byte at byte " + std::to_string(line.size()) + "; expected text");
+    EXPECT_EQ(frame_of("\xEF\xBB\xBF" + line),
+              "begins with a byte order mark; expected text without one");
   }
 }
 TEST(InputLine, AFrameAsCansendTakesItIsTaken) {
@@ -75,9 +97,29 @@ TEST(InputLine, WhatTellsOfTheBusIsPassedOver) {
   for (const char* line :
        {R"({"type":"lost","frames":12})", R"({"type":"state","state":"down"})",
         R"({"type":"CAN","kind":"error","id":4,"length":8,"data":[0,1,0,0,0,0,0,0]})",
-        "(1.000000) can0 20000004#0001000000000000"}) {
+        R"({"type":"CAN FD","frames":12})", "(1.000000) can0 20000004#0001000000000000",
+        "(1.000000) can0 20000080#", "20000004#00",
+        "DROPCOUNT: dropped 3 CAN frames on 'can0' socket (total drops 3)\r"}) {
     EXPECT_EQ(frame_of(line), "passed over") << line;
   }
+}
+TEST(InputLine, CommentsAreTold) {
+  for (const char* line : {"# 123#11", "#123", " \t; of a log\r", "//", "// {}"}) {
+    EXPECT_EQ(frame_of(line), "comment") << line;
+  }
+}
+// The time is not looked at, so it takes no frame away.
+TEST(InputLine, ALogLineIsTakenWhateverItsTime) {
+  for (const char* time : {"0.0", "7", "7.", ".5", "-0.250000", "1436509052.2497131234",
+                           "99999999999.0", "nan", "", "2015-07-10 08:17:32.249713"}) {
+    EXPECT_EQ(frame_of(std::string("(") + time + ") can0 123#1122"), "123#1122") << time;
+  }
+  EXPECT_EQ(frame_of("(1.0 can0 123#"),
+            "log line \"(1.0 can0 123#\": no ')' after the time; expected (SECONDS.FRACTION)");
+}
+TEST(InputLine, TheInterfaceIsTheLogs) {
+  EXPECT_EQ(parse_input_line("(1.0) vcan7 123#", from)->interface_name, "vcan7");
+  EXPECT_EQ(parse_input_line("123#", from)->interface_name, "");
 }
 TEST(InputLine, JsonOfAnotherFrameIsRefusedWithTheField) {
   for (const auto& [line, error] : {

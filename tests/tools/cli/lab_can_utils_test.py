@@ -2,7 +2,9 @@
 """roio-cli on real SocketCAN, with can-utils as its peers. Runs in scripts/lab: root, vcan0, vcan1."""
 
 import glob
+import io
 import os
+import random
 import re
 import signal
 import subprocess
@@ -135,6 +137,80 @@ class CandumpTest(CliTest):
         candump = Peer("candump", "-L", "-n", "2", "vcan1", interface="vcan1")
         self.send("vcan1", "-", stdin="(1.000000) can0 123#11 R\n(1.000000) can0 124#22 T\n")
         self.assertEqual(frames(candump.output()), ["123#11", "124#22"])
+
+
+    def test_send_replays_what_python_can_writes(self):
+        import can  # only here: the lab's Python has it
+
+        generator = random.Random(int(os.environ.get("ROIO_SEED", "13")))
+        text = io.StringIO()
+        writer = can.CanutilsLogWriter(text)
+        sent = []
+        for i in range(200):
+            extended, remote = generator.random() < 0.5, generator.random() < 0.2
+            data = bytes() if remote else generator.randbytes(generator.randrange(9))
+            identifier = generator.randrange(1 << (29 if extended else 11))
+            writer.on_message_received(can.Message(
+                timestamp=i * 0.25 - 1, arbitration_id=identifier, is_extended_id=extended,
+                is_remote_frame=remote, is_rx=generator.random() < 0.5, data=data, channel=0))
+            body = "R" if remote else data.hex().upper()
+            sent.append((f"{identifier:08X}#" if extended else f"{identifier:03X}#") + body)
+        writer.on_message_received(can.Message(timestamp=100, is_error_frame=True, channel=0))
+        candump = Peer("candump", "-L", "-n", "200", "vcan1", interface="vcan1")
+        self.assertEqual(
+            self.run_cli("send", "vcan1", "-", stdin=text.getvalue()),
+            (0, "", "roio-cli: vcan1: 200 messages sent, passed over: 1 bus report\n"))
+        self.assertEqual(frames(candump.output()), sent)
+
+
+class CanFdTest(CliTest):
+    """vcan0 as an interface with CAN FD."""
+
+    def setUp(self):
+        super().setUp()
+        self.set_mtu(72)
+        self.addCleanup(self.set_mtu, 16)
+
+    @staticmethod
+    def set_mtu(size):
+        run("ip", "link", "set", "vcan0", "down")
+        run("ip", "link", "set", "vcan0", "mtu", str(size), "up")
+
+    def test_dump_tells_of_frames_that_it_cannot_show(self):
+        dump = self.dump("-n", "1", "vcan0")
+        run("cansend", "vcan0", "123##1112233")
+        self.assertEqual(dump.line(), "! 1 CAN FD frame not shown\n")
+        run("cansend", "vcan0", "123##0")
+        run("cansend", "vcan0", "1000400A##0" + 64 * "FF")
+        run("cansend", "vcan0", "1000400A#01")
+        self.assertEqual(
+            dump.result(),
+            (0,
+             "0.10   -> 0.2     normal  message  [1]  01\n"
+             "! 2 CAN FD frames not shown\n",
+             "roio-cli: vcan0: 1 frame shown, 0 lost, 3 CAN FD frames not shown\n"))
+
+    def test_they_are_objects_in_json_and_leave_a_log_as_it_is(self):
+        for option, output, errors in (
+            ("--json", '{"type":"CAN FD","frames":1}\n', ""),
+            ("--log", "", "roio-cli: vcan0: 1 CAN FD frame not shown\n"),
+        ):
+            dump = self.dump("-n", "1", option, "vcan0")
+            run("cansend", "vcan0", "123##1112233")
+            run("cansend", "vcan0", "1000400A#01")
+            status, out, err = dump.result()
+            self.assertEqual(status, 0)
+            self.assertIn(output, out)
+            self.assertEqual(len(out.splitlines()), 1 + len(output.splitlines()))
+            self.assertEqual(err, errors + "roio-cli: vcan0: 1 frame shown, 0 lost, 1 CAN FD frame not shown\n")
+
+    def test_filters_are_theirs_too_and_classic_frames_are_sent(self):
+        dump = self.dump("-n", "1", "vcan0", "123:7FF")
+        run("cansend", "vcan0", "124##0")
+        run("cansend", "vcan0", "123##0")
+        self.send("vcan0", "123#11")
+        self.assertEqual(dump.result()[2],
+                         "roio-cli: vcan0: 1 frame shown, 0 lost, 1 CAN FD frame not shown\n")
 
 
 class MessageTest(CliTest):

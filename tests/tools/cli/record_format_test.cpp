@@ -19,6 +19,8 @@ std::string written(RecordFormat& format) {
   format.frame(out, received(0x1000400A, FrameKind::extended));
   format.lost(out, 1);
   format.lost(out, 12);
+  format.not_shown(out, 1);
+  format.not_shown(out, 2);
   format.state(out, BusState::down);
   format.frame(out, received(0x123, FrameKind::standard));
   return {out.data(), out.size()};
@@ -29,6 +31,8 @@ TEST(RecordFormat, TextSaysInLineWhatHappened) {
             "(000.000000) 0.10   -> 0.2     normal  message  [3]  5A 2D 00\n"
             "! 1 frame lost\n"
             "! 12 frames lost\n"
+            "! 1 CAN FD frame not shown\n"
+            "! 2 CAN FD frames not shown\n"
             "! bus is down\n"
             "(000.000000) foreign  11-bit 123                [3]  5A 2D 00\n");
 }
@@ -48,6 +52,8 @@ TEST(RecordFormat, LogKeepsStandardOutputForFramesAlone) {
   EXPECT_EQ(testing::internal::GetCapturedStderr(),
             "roio-cli: vcan0: 1 frame lost\n"
             "roio-cli: vcan0: 12 frames lost\n"
+            "roio-cli: vcan0: 1 CAN FD frame not shown\n"
+            "roio-cli: vcan0: 2 CAN FD frames not shown\n"
             "roio-cli: vcan0: bus is down\n");
   EXPECT_EQ(rest, "(1436509052.249713) vcan0 123#5A2D00\n");
 }
@@ -60,6 +66,10 @@ TEST(RecordFormat, JsonIsOneObjectALine) {
       R"({"type":"lost","frames":1})"
       "\n"
       R"({"type":"lost","frames":12})"
+      "\n"
+      R"({"type":"CAN FD","frames":1})"
+      "\n"
+      R"({"type":"CAN FD","frames":2})"
       "\n"
       R"({"type":"state","state":"down"})"
       "\n"

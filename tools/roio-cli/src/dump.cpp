@@ -65,6 +65,7 @@ class Dump {
       }
       flush(out_);
     }
+    tell_fd_frames();
     flush(out_);
     return say_last_word();
   }
@@ -117,6 +118,9 @@ class Dump {
   // Asks the kernel, so not after every batch.
   void announce_changes() {
     next_look_ = Clock::now() + look_around_every;
+    if (told_fd_frames_ == 0) {
+      tell_fd_frames();
+    }
     const BusState state = bus_.state();
     if (is_local_ && is_between_hubs(state)) {
       return;
@@ -129,6 +133,16 @@ class Dump {
     }
     announce(state);
     outages_ = outages;
+  }
+
+  // The first as soon as they come, so that nobody waits for a dump of what it cannot show; the
+  // others at the end.
+  void tell_fd_frames() {
+    const std::uint64_t seen = bus_.statistics().fd_frames;
+    if (seen > told_fd_frames_) {
+      format_->not_shown(out_, seen - told_fd_frames_);
+      told_fd_frames_ = seen;
+    }
   }
 
   // On a local bus another process becomes the hub within moments, and nothing is lost by it.
@@ -149,9 +163,9 @@ class Dump {
 
   int say_last_word() {
     const std::uint64_t lost = std::max(bus_.statistics().dropped, announced_lost_);
-    if (lost > 0 || options_.verbose) {
+    if (lost > 0 || told_fd_frames_ > 0 || options_.verbose) {
       note(bus_.name() + ": " + count_of(shown_, "frame") + " shown, " + std::to_string(lost) +
-           " lost");
+           " lost" + (told_fd_frames_ > 0 ? ", " + fd_frames_not_shown(told_fd_frames_) : ""));
     }
     if (const int signal = Interrupt::signal()) {
       return exit_signal + signal;
@@ -176,6 +190,7 @@ class Dump {
   Clock::time_point next_look_;  // at once: the bus may be down from the start
   std::uint64_t shown_ = 0;
   std::uint64_t announced_lost_ = 0;
+  std::uint64_t told_fd_frames_ = 0;
   Clock::time_point last_shown_;
 };
 

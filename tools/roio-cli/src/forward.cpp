@@ -99,6 +99,10 @@ std::string Forwarder::report() const {
     text += fmt::format("; the controller of {} lost others, uncounted, {}", from_.name,
                         count_of(near.overruns, "time"));
   }
+  if (near.fd_frames > 0) {
+    text += fmt::format("; {} of {} not handed on", count_of(near.fd_frames, "CAN FD frame"),
+                        from_.name);
+  }
   return text;
 }
 

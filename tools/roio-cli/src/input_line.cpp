@@ -2,6 +2,7 @@
 
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <roio/candump_log.hpp>
@@ -14,26 +15,64 @@ namespace roio::cli {
 namespace {
 
 constexpr std::string_view white_space = " \t\r\n";
+constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";
 
-// An error report is none to be sent.
-std::optional<Frame> sendable(const Frame& frame) {
-  return frame.kind == FrameKind::error ? std::nullopt : std::optional(frame);
+// What candump -l writes between the frames, with -d.
+constexpr std::string_view drops_of_candump = "DROPCOUNT: ";
+
+InputLine of_kind(InputLine::Kind kind) {
+  return {kind, {}, {}};
 }
 
-Parsed<std::optional<Frame>> from_log(std::string_view line) {
-  const auto log = parse_log_line(line);
+// An error report is none to be sent.
+InputLine line_of(const Frame& frame, const std::string& interface_name = {}) {
+  return frame.kind == FrameKind::error ? of_kind(InputLine::Kind::news)
+                                        : InputLine{InputLine::Kind::frame, frame, interface_name};
+}
+
+Parsed<InputLine> from_json(std::string_view line, Address default_source) {
+  const auto frame = parse_json_line(line, default_source);
+  if (!frame) {
+    return frame.error();
+  }
+  return *frame ? line_of(**frame) : of_kind(InputLine::Kind::news);
+}
+
+Parsed<InputLine> from_log(std::string_view line) {
+  const auto log = parse_log_line_of_any_time(line);
   if (!log) {
     return log.error();
   }
-  return sendable(log->frame);
+  return line_of(log->frame, log->interface_name);
 }
 
-Parsed<std::optional<Frame>> from_frame(std::string_view text) {
+Parsed<InputLine> from_frame(std::string_view text) {
   const auto frame = parse_frame_text(text);
   if (!frame) {
     return frame.error();
   }
-  return sendable(*frame);
+  return line_of(*frame);
+}
+
+bool is_comment(std::string_view text) {
+  return text.starts_with('#') || text.starts_with(';') || text.starts_with("//");
+}
+
+// What is wrong with a line of any kind. A zero byte ends a text for some parsers, which then take
+// what stands before it.
+std::optional<ParseError> check_line(std::string_view line) {
+  if (line.size() > LineReader::max_line) {
+    return ParseError{
+        "expected a line of at most " + std::to_string(LineReader::max_line) + " bytes", 0};
+  }
+  const std::size_t zero = line.find('\0');
+  if (zero != std::string_view::npos) {
+    return ParseError{"a zero byte at byte " + std::to_string(zero) + "; expected text", zero};
+  }
+  if (line.starts_with(byte_order_mark)) {
+    return ParseError{"begins with a byte order mark; expected text without one", 0};
+  }
+  return std::nullopt;
 }
 
 }  // namespace
@@ -42,21 +81,26 @@ bool is_blank(std::string_view line) noexcept {
   return line.find_first_not_of(white_space) == std::string_view::npos;
 }
 
-Parsed<std::optional<Frame>> parse_input_line(std::string_view line, Address default_source) {
-  if (line.size() > LineReader::max_line) {
-    return ParseError{
-        "expected a line of at most " + std::to_string(LineReader::max_line) + " bytes", 0};
+Parsed<InputLine> parse_input_line(std::string_view line, Address default_source) {
+  if (const auto error = check_line(line)) {
+    return *error;
   }
-  const std::size_t first = line.find_first_not_of(white_space);
-  if (first != std::string_view::npos && line[first] == '{') {
-    return parse_json_line(line, default_source);
+  const std::size_t first = std::min(line.find_first_not_of(white_space), line.size());
+  const std::string_view text = line.substr(first, line.find_last_not_of(white_space) + 1 - first);
+  if (text.starts_with('{')) {
+    return from_json(line, default_source);
   }
-  if (first != std::string_view::npos && line[first] == '(') {
-    return from_log(line.substr(first));
+  if (text.starts_with('(')) {
+    return from_log(text);
   }
-  const std::size_t hash = line.find('#');
-  if (first != std::string_view::npos && hash != std::string_view::npos && hash > first) {
-    return from_frame(line.substr(first, line.find_last_not_of(white_space) + 1 - first));
+  if (is_comment(text)) {
+    return of_kind(InputLine::Kind::comment);
+  }
+  if (text.starts_with(drops_of_candump)) {
+    return of_kind(InputLine::Kind::news);
+  }
+  if (text.find('#') != std::string_view::npos) {
+    return from_frame(text);
   }
   return ParseError{
       "expected a JSON message {\"type\":\"Roio\",...}, a frame ID#DATA, or a line of a log "

@@ -3,6 +3,7 @@
 #define ROIO_CLI_INPUT_LINE_HPP
 
 #include <cstddef>
+#include <cstdint>
 #include <optional>
 #include <roio/address.hpp>
 #include <roio/frame.hpp>
@@ -12,13 +13,22 @@
 
 namespace roio::cli {
 
+struct InputLine {
+  enum class Kind : std::uint8_t {
+    frame,
+    news,     ///< Tells of the bus that it comes from: an error report, a loss, a state.
+    comment,  ///< For people.
+  };
+  Kind kind;
+  Frame frame{};                 ///< Of kind frame; one that can be sent.
+  std::string interface_name{};  ///< That a log has it from; empty: it is from no log.
+};
+
 /// Reads one line that is not blank. "{" begins JSON as `dump --json` writes it (a message's source
-/// is `default_source` when it names none), "(" a line of a log; else it is a frame as
-/// cansend takes it. A frame is sent as it is.
-/// @return the frame, one that can be sent; none: the line tells of the bus that it comes from (an
-///         error report, a loss, a state), and cannot be sent; or an error that says what was
-///         expected.
-Parsed<std::optional<Frame>> parse_input_line(std::string_view line, Address default_source);
+/// is `default_source` when it names none), "(" a line of a log, whatever its time, and "#", ";" or
+/// "//" a comment; else it is a frame as cansend takes it.
+/// @return an error says what was expected.
+Parsed<InputLine> parse_input_line(std::string_view line, Address default_source);
 
 bool is_blank(std::string_view line) noexcept;
 

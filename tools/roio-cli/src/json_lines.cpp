@@ -47,6 +47,9 @@ class JsonFormat final : public RecordFormat {
   void lost(Buffer& out, std::uint64_t count) override {
     fmt::format_to(std::back_inserter(out), "{{\"type\":\"lost\",\"frames\":{}}}\n", count);
   }
+  void not_shown(Buffer& out, std::uint64_t fd_frames) override {
+    fmt::format_to(std::back_inserter(out), "{{\"type\":\"CAN FD\",\"frames\":{}}}\n", fd_frames);
+  }
   void state(Buffer& out, BusState state) override {
     fmt::format_to(std::back_inserter(out), "{{\"type\":\"state\",\"state\":\"{}\"}}\n",
                    to_string(state));
@@ -171,7 +174,7 @@ std::optional<Parsed<std::optional<Frame>>> parse_other(std::string_view line) {
   if (type == "CAN") {
     return read_foreign(*object);
   }
-  if (type == "lost" || type == "state") {
+  if (type == "lost" || type == "CAN FD" || type == "state") {
     return std::optional<Frame>();
   }
   return std::nullopt;

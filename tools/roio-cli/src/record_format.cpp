@@ -21,6 +21,9 @@ class TextFormat final : public RecordFormat {
   void lost(Buffer& out, std::uint64_t count) override {
     announce(out, count_of(count, "frame") + " lost");
   }
+  void not_shown(Buffer& out, std::uint64_t fd_frames) override {
+    announce(out, fd_frames_not_shown(fd_frames));
+  }
   void state(Buffer& out, BusState state) override {
     announce(out, std::string("bus is ") + to_string(state));
   }
@@ -49,6 +52,9 @@ class LogFormat final : public RecordFormat {
   void lost(Buffer& out, std::uint64_t count) override {
     announce(out, count_of(count, "frame") + " lost");
   }
+  void not_shown(Buffer& out, std::uint64_t fd_frames) override {
+    announce(out, fd_frames_not_shown(fd_frames));
+  }
   void state(Buffer& out, BusState state) override {
     announce(out, std::string("bus is ") + to_string(state));
   }
@@ -75,6 +81,10 @@ std::unique_ptr<RecordFormat> log_format(std::string interface_name) {
 
 std::string count_of(std::uint64_t count, const char* what) {
   return std::to_string(count) + " " + what + (count == 1 ? "" : "s");
+}
+
+std::string fd_frames_not_shown(std::uint64_t count) {
+  return count_of(count, "CAN FD frame") + " not shown";
 }
 
 }  // namespace roio::cli

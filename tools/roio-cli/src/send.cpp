@@ -6,6 +6,7 @@
 #include <roio/error.hpp>
 #include <roio/text.hpp>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "exit_status.hpp"
@@ -35,6 +36,7 @@ constexpr std::uint64_t max_named_lines = 10;
 std::unique_ptr<Bus> open_bus(const SendOptions& options) {
   OpenOptions open_options;
   open_options.send_only = true;
+  open_options.in_order = !options.frame;  // what was recorded comes out as it was
   if (!options.wait) {
     return open_until_signal(options.bus, open_options);
   }
@@ -122,14 +124,20 @@ void send_repeatedly(Sender& sender, const Frame& frame, std::uint64_t count) {
   }
 }
 
+/// Lines that were not sent.
+struct Unsent {
+  std::uint64_t refused = 0;
+  std::uint64_t news = 0;
+  std::uint64_t comments = 0;
+};
+
 /// Standard input, line by line.
 class LineSender {
  public:
-  LineSender(Sender& sender, Address default_source)
-      : sender_(sender), default_source_(default_source), reader_(STDIN_FILENO) {}
+  LineSender(const std::string& bus, Sender& sender, Address default_source)
+      : bus_(bus), sender_(sender), default_source_(default_source), reader_(STDIN_FILENO) {}
 
-  [[nodiscard]] std::uint64_t refused() const { return refused_; }
-  [[nodiscard]] std::uint64_t passed_over() const { return passed_over_; }
+  [[nodiscard]] const Unsent& unsent() const { return unsent_; }
 
   void run() {
     bool more = true;
@@ -159,18 +167,41 @@ class LineSender {
     const auto parsed = parse_input_line(line, default_source_);
     if (!parsed) {
       refuse(parsed.error());
-    } else if (*parsed) {
-      pending_.push_back(**parsed);
-    } else {
-      ++passed_over_;
+      return;
+    }
+    switch (parsed->kind) {
+      case InputLine::Kind::frame:
+        see_interface(parsed->interface_name);
+        pending_.push_back(parsed->frame);
+        break;
+      case InputLine::Kind::news:
+        ++unsent_.news;
+        break;
+      case InputLine::Kind::comment:
+        ++unsent_.comments;
+        break;
     }
   }
 
+  // A log of two buses on one is hardly what anybody wants, and may be.
+  void see_interface(const std::string& name) {
+    if (interface_.empty()) {
+      interface_ = name;
+    }
+    if (name.empty() || name == interface_ || several_are_told_) {
+      return;
+    }
+    note("line " + std::to_string(line_number_) + ": the log is of several interfaces, " +
+         quote(interface_) + " and " + quote(name) + " among them; the frames of all are sent to " +
+         bus_);
+    several_are_told_ = true;
+  }
+
   void refuse(const ParseError& error) {
-    ++refused_;
-    if (refused_ <= max_named_lines) {
+    ++unsent_.refused;
+    if (unsent_.refused <= max_named_lines) {
       note("line " + std::to_string(line_number_) + ": " + error.message);
-    } else if (refused_ == max_named_lines + 1) {
+    } else if (unsent_.refused == max_named_lines + 1) {
       note("line " + std::to_string(line_number_) +
            " and others, which are not named: their number follows at the end");
     }
@@ -182,28 +213,24 @@ class LineSender {
     return going;
   }
 
+  const std::string& bus_;
   Sender& sender_;
   Address default_source_;
   LineReader reader_;
   std::vector<Frame> pending_;
   std::uint64_t line_number_ = 0;
-  std::uint64_t refused_ = 0;
-  std::uint64_t passed_over_ = 0;
+  std::string interface_;  // the first that a log named
+  bool several_are_told_ = false;
+  Unsent unsent_;
 };
 
-/// Lines that were not sent.
-struct Unsent {
-  std::uint64_t refused = 0;
-  std::uint64_t passed_over = 0;
-};
-
-Unsent send_lines(Sender& sender, Address source) {
+Unsent send_lines(const SendOptions& options, Sender& sender) {
   if (::isatty(STDIN_FILENO) == 1) {
     note("reading JSON messages or log lines; Ctrl-D ends");
   }
-  LineSender lines(sender, source);
+  LineSender lines(options.bus, sender, options.source);
   lines.run();
-  return {lines.refused(), lines.passed_over()};
+  return lines.unsent();
 }
 
 // Who was on the bus under a hub that has just gone comes over to this process's within moments,
@@ -228,17 +255,25 @@ void close(Bus& bus) {
   }
 }
 
+std::string passed_over(const Unsent& unsent) {
+  std::string text;
+  for (const auto& [count, what] :
+       {std::pair{unsent.news, "bus report"}, std::pair{unsent.comments, "comment"}}) {
+    if (count > 0) {
+      text += (text.empty() ? ", passed over: " : ", ") + count_of(count, what);
+    }
+  }
+  return text;
+}
+
 int finish(const SendOptions& options, const Sender& sender, const Unsent& unsent) {
   std::string text = options.bus + ": " + count_of(sender.sent(), "message") + " sent";
   if (unsent.refused > 0) {
     text += ", " + count_of(unsent.refused, "line") + " refused";
   }
-  if (unsent.passed_over > 0) {
-    text += ", " + count_of(unsent.passed_over, "line") +
-            " passed over that tell of the bus they come from";
-  }
+  text += passed_over(unsent);
   const int signal = Interrupt::signal();
-  if (signal != 0 || unsent.refused > 0 || unsent.passed_over > 0) {
+  if (signal != 0 || unsent.refused > 0 || unsent.news > 0 || unsent.comments > 0) {
     note(text);
   }
   if (signal != 0) {
@@ -262,7 +297,7 @@ int send(const SendOptions& options) {
   if (options.frame) {
     send_repeatedly(sender, *options.frame, options.count);
   } else {
-    unsent = send_lines(sender, options.source);
+    unsent = send_lines(options, sender);
   }
   close(*bus);
   return finish(options, sender, unsent);

@@ -71,7 +71,8 @@ struct Statistics {
   std::uint64_t sent = 0;        ///< Frames handed to the bus.
   std::uint64_t received = 0;    ///< Frames that passed the filters and were returned.
   std::uint64_t dropped = 0;     ///< Frames that passed the filters and were lost to this receiver.
-  std::uint64_t send_waits = 0;  ///< Times a transmit queue was full and send() waited.
+  std::uint64_t send_waits = 0;  ///< Times a transmit queue was full, or a frame's turn had not
+                                 ///< come (OpenOptions::in_order), and send() waited.
   std::uint64_t send_timeouts = 0;  ///< send() calls that gave up at their deadline.
   std::uint64_t error_frames = 0;   ///< Error reports of the controller.
   std::uint64_t bus_offs = 0;       ///< Times the controller went bus-off.
@@ -82,6 +83,8 @@ struct Statistics {
                                  ///< or a bridge; such that a bridge gave up, or cannot tell of.
   std::uint64_t unheard = 0;     ///< Frames carried on a local bus while nobody else received.
   std::uint64_t overruns = 0;    ///< Reports of a controller that it lost frames, how many unsaid.
+  std::uint64_t fd_frames = 0;   ///< CAN FD frames that passed the filters of a CAN interface; they
+                                 ///< are counted, and not returned.
 };
 
 struct OpenOptions {
@@ -97,6 +100,10 @@ struct OpenOptions {
   /// open() waits for such a program, and throws Errc::not_connected when none comes in time; the
   /// bus is absent while there is none. For programs that come and go. Others take no notice.
   bool join_only = false;
+  /// Frames go out exactly in the order in which send() is given them: an urgent one waits until
+  /// all before it have gone, and passes none. For replaying what was recorded. Costs a round trip
+  /// to the bus wherever the priority changes.
+  bool in_order = false;
 };
 
 class ROIO_EXPORT Bus {
@@ -109,7 +116,8 @@ class ROIO_EXPORT Bus {
   /// Sends frames in order; waits while a queue is full, the interface is down or the controller is
   /// bus-off, to the deadline.
   /// Order among frames of one priority is kept; where the backend arbitrates, urgent ones (bit 28
-  /// of an extended identifier 0) pass normal ones that still wait. A sender does not receive its
+  /// of an extended identifier 0) pass normal ones that still wait (but see
+  /// OpenOptions::in_order). A sender does not receive its
   /// own frames.
   /// @param frames each is_valid() and not an error report, else throws Errc::bad_frame naming it
   ///        and nothing is sent.

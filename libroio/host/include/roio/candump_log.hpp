@@ -35,9 +35,15 @@ struct LogLine {
 /// frames are refused by name. Fractions of a second of 1..9 digits are taken.
 ROIO_EXPORT Parsed<LogLine> parse_log_line(std::string_view line);
 
-/// The frame part alone: "123#1122", as cansend takes it (dots between bytes allowed). Where
-/// cansend guesses, this refuses: a ninth byte, an identifier above 7FF in three digits, text after
-/// R.
+/// The same for who does not need the time: whatever stands in the brackets is taken, such as
+/// "(-0.250000)", "(7)" or "(2015-07-10 08:17:32.249713)". LogLine::time is 0 where
+/// parse_log_line() would refuse it.
+ROIO_EXPORT Parsed<LogLine> parse_log_line_of_any_time(std::string_view line);
+
+/// The frame part alone: "123#1122", as cansend takes it (dots between bytes allowed). A length
+/// code above 8, as newer can-utils write it after 8 bytes or R8 ("_9" to "_F"), is read as the 8
+/// that it means. Where cansend guesses, this refuses: a ninth byte, an identifier above 7FF in
+/// three digits, text after R.
 ROIO_EXPORT Parsed<Frame> parse_frame_text(std::string_view text);
 
 /// Room for the longest line that format_log_line() writes.

@@ -31,10 +31,10 @@ struct JsonMessage {
 /// Decodes one message. Unknown fields are errors, so a slip of the pen is seen.
 /// Refused with the field's name and what was expected there: missing, of the wrong type, out of
 /// range, not an integer, contradicting another, given twice; texts above 4,096 bytes, nested
-/// deeper than the format ever is, or not UTF-8. A subnet "server" and an address that is a name,
-/// which the original has between software modules, are refused as such.
-/// ParseError::offset is that of a syntax error; where the field is named, it is 0. Throws nothing
-/// but std::bad_alloc. Fractions of a timestamp are taken to the nanosecond.
+/// deeper than the format ever is, not UTF-8, or with a zero byte or a byte order mark. A subnet
+/// "server" and an address that is a name, which the original has between software modules, are
+/// refused as such. ParseError::offset is that of a syntax error; where the field is named, it is
+/// 0. Throws nothing but std::bad_alloc. Fractions of a timestamp are taken to the nanosecond.
 ROIO_EXPORT Parsed<JsonMessage> parse_json(std::string_view text);
 
 /// Encodes one message on one line, no line end: the original's fields in the original's order,

@@ -13,6 +13,7 @@ namespace roio {
 namespace {
 
 constexpr std::size_t max_text = 4096;
+constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";
 
 std::optional<Field> missing_field(const Fields& fields) {
   for (const Field field :
@@ -116,6 +117,15 @@ std::optional<ParseError> check_text(std::string_view text) {
     return ParseError{"JSON: not UTF-8 at byte " + std::to_string(not_utf8) + ", " +
                           quote(text.substr(not_utf8, 1)),
                       not_utf8};
+  }
+  // To the parser, a zero byte is the end of the text, and the mark is nothing.
+  const std::size_t zero = text.find('\0');
+  if (zero != std::string_view::npos) {
+    return ParseError{"JSON: a zero byte at byte " + std::to_string(zero) + "; expected text",
+                      zero};
+  }
+  if (text.starts_with(byte_order_mark)) {
+    return ParseError{"JSON: begins with a byte order mark; expected none", 0};
   }
   return std::nullopt;
 }

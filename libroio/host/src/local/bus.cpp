@@ -39,7 +39,8 @@ class LocalBus final : public Bus {
            const OpenOptions& options)
       : name_("local:" + bus_name),
         connector_(bus_name, bitrate_bps, !options.join_only),
-        inbox_(connector_.client(), first_filters(options)) {
+        inbox_(connector_.client(), first_filters(options)),
+        outbox_(options.in_order) {
     auto connection = connector_.connect(Deadline(options.open_timeout), stop_);
     if (!connection) {
       throw connector_.why_not();

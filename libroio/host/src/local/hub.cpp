@@ -75,8 +75,8 @@ bool Hub::take_over() {
   return any;
 }
 
-// The last hub may have died after it had carried a frame and before it had told the sender. Or while
-// it was writing the next one, in the place of the oldest that is kept: that one is left out.
+// The last hub may have died after it had carried a frame and before it had told the sender. Or
+// while it was writing the next one, in the place of the oldest that is kept: that one is left out.
 void Hub::note_done_from_log() {
   std::unordered_map<std::uint64_t, Slot*> slots;
   for (Slot& slot : memory_->slots) {
@@ -335,14 +335,13 @@ void Hub::free_slots_of_the_dead() {
 void Hub::take_frame(HubClient& client, const OfferedFrame& offered) {
   const std::optional<Frame> frame = from_wire(offered.frame);
   // A client of ours stays within its window; what does not is no client of ours.
-  if (!frame || client.station()->waiting(lane_of(*frame)) > window()) {
+  if (!frame || offered.lane >= lane_count || client.station()->waiting(offered.lane) > window()) {
     cut(client);
     return;
   }
-  const std::size_t lane = lane_of(*frame);
-  if (offered.sequence >
-      memory_->slots.at(client.slot()).done.at(lane).load(std::memory_order_relaxed)) {
-    client.station()->add(lane, {*frame, offered.sequence});
+  const Slot& slot = memory_->slots.at(client.slot());
+  if (offered.sequence > slot.done.at(offered.lane).load(std::memory_order_relaxed)) {
+    client.station()->add(offered.lane, {*frame, offered.sequence});
   }
   medium_->offered(now_);
 }

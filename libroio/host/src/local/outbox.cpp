@@ -5,12 +5,12 @@
 namespace roio::local {
 
 bool Outbox::offer(const Frame& frame, Buffer& out) {
-  const std::size_t lane = lane_of(frame);
+  const std::size_t lane = in_order_ ? normal_lane : lane_of(frame);
   auto& kept = kept_.at(lane);
   if (kept.size() >= window_) {
     return false;
   }
-  kept.push_back({sequence_.at(lane) + 1, to_wire(frame)});
+  kept.push_back({sequence_.at(lane) + 1, static_cast<std::uint32_t>(lane), 0, to_wire(frame)});
   try {
     append_record(out, kept.back());
   } catch (...) {

@@ -17,6 +17,9 @@ namespace roio::local {
 /// be offered to the next hub when this one goes. The caller holds the bus's lock.
 class Outbox {
  public:
+  /// @param in_order all in one lane, so that none passes another.
+  explicit Outbox(bool in_order) : in_order_(in_order) {}
+
   /// A hub that has been offered nothing yet.
   void begin(std::uint32_t window) {
     window_ = window;
@@ -37,6 +40,7 @@ class Outbox {
   [[nodiscard]] std::size_t size() const { return kept_[0].size() + kept_[1].size(); }
 
  private:
+  const bool in_order_;
   std::uint32_t window_ = 0;
   std::array<std::deque<OfferedFrame>, lane_count> kept_;
   std::array<std::size_t, lane_count> offered_{};  // of kept_, to this hub

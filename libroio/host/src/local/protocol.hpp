@@ -66,6 +66,8 @@ struct WireFrame {
 struct OfferedFrame {
   static constexpr RecordType type = RecordType::frame;
   std::uint64_t sequence;
+  std::uint32_t lane;  // lane_of(), but for senders that keep all their frames in order
+  std::uint32_t zero;
   WireFrame frame;
 };
 

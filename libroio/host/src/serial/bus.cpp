@@ -39,8 +39,8 @@ constexpr milliseconds retry_interval{100};  // to open the port again
 constexpr milliseconds filter_time{1000};
 constexpr std::size_t receive_capacity = 16384;
 
-SerialSettings settings_of(const BusUrl& url, std::vector<serial::Rule> rules) {
-  SerialSettings settings;
+SerialSettings settings_of(const BusUrl& url, std::vector<serial::Rule> rules, bool in_order) {
+  SerialSettings settings{.in_order = in_order};
   settings.line_rate_bps = url.baud.value_or(settings.line_rate_bps);
   settings.bitrate_bps = url.bitrate;
   settings.mode = url.mode;
@@ -62,7 +62,7 @@ class SerialBus final : public Bus, public Bridge {
         path_(std::move(path)),
         error_frames_(options.error_frames),
         filters_(!options.send_only),
-        session_(settings_of(url, filters_.rules()), random_nonce),
+        session_(settings_of(url, filters_.rules(), options.in_order), random_nonce),
         port_(std::in_place, path_, name_, base_rate_bps) {
     session_.begin(steady_now());
     flush();
@@ -322,7 +322,7 @@ void SerialBus::follow_session() {
   const bool became_ready = is_ready() && !was_ready_;
   statistics_.outages += was_ready_ && !is_ready() ? 1U : 0U;
   was_ready_ = is_ready();
-  if (became_ready || session_.waiting() < waiting_seen_) {
+  if (became_ready || session_.waiting() < waiting_seen_ || session_.all_done()) {
     sendable_.set();
   }
   waiting_seen_ = session_.waiting();

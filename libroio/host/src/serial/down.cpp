@@ -21,11 +21,12 @@ Outcome outcome_of(std::uint32_t slots, std::size_t slot) {
 std::size_t DownFrames::offer(std::span<const Frame> frames) {
   std::size_t count = 0;
   for (const Frame& frame : frames) {
-    auto& lane = lanes_.at(lane_in_driver(frame));
-    if (lane.size() >= lane_capacity) {
+    const std::size_t lane = lane_in_driver(frame);
+    if (lanes_.at(lane).size() >= lane_capacity || !order_.admits(lane, done())) {
       break;
     }
-    lane.push_back(frame);
+    order_.accepted(lane);
+    lanes_.at(lane).push_back(frame);
     ++count;
   }
   return count;

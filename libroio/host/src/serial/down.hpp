@@ -30,8 +30,11 @@ class DownFrames {
     std::uint64_t resent = 0;    ///< Records sent again.
   };
 
-  /// Accepts frames as long as their lanes have room.
-  /// @return how many: up to the first for which there is none.
+  /// @param in_order OpenOptions::in_order.
+  explicit DownFrames(bool in_order = false) : order_(in_order) {}
+
+  /// Accepts frames as long as their lanes have room, and it is their turn.
+  /// @return how many: up to the first for which that is not so.
   std::size_t offer(std::span<const Frame> frames);
 
   /// Another session: what has a number is unknown from now on, what waits goes on waiting.
@@ -78,6 +81,7 @@ class DownFrames {
   std::deque<Frame>* waiting_lane();
 
   std::array<std::deque<Frame>, lane_count> lanes_;
+  LaneOrder order_;
   std::array<Slot, window> slots_;
   std::size_t pending_ = 0;     // of slots_
   std::uint64_t taken_ = 0;     // by the bridge: all before this number

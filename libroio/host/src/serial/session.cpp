@@ -32,7 +32,8 @@ constexpr unsigned nonce_tries = 16;
 SerialSession::SerialSession(SerialSettings settings, Nonces nonces)
     : settings_(std::move(settings)),
       nonces_(std::move(nonces)),
-      line_rate_(settings_.line_rate_bps) {}
+      line_rate_(settings_.line_rate_bps),
+      down_(settings_.in_order) {}
 
 // --- the course of a session ---------------------------------------------------------------------
 

@@ -19,6 +19,7 @@ struct SerialSettings {
   std::optional<Address> address{};            ///< None: as the bridge has it.
   /// At most serial::max_rules, of which one must match; none: as the bridge has them.
   std::optional<std::vector<serial::Rule>> rules{};
+  bool in_order = false;  ///< OpenOptions::in_order.
 };
 
 }  // namespace roio

@@ -68,7 +68,7 @@ class SocketCanBus final : public Bus {
     Statistics statistics;
     link_.fill(statistics);
     transmitter_.fill(statistics);
-    statistics.received = receiver_.received();
+    receiver_.fill(statistics);
     return statistics;
   }
 

@@ -32,8 +32,9 @@ Transfer Receiver::receive(std::span<Received> frames, Timeout timeout) {
   if (count == 0) {
     const Deadline deadline(timeout);
     Result woken = Result::ok;
-    // What came in together with the end of the wait is taken all the same. Error reports and news
-    // of other interfaces end a poll() too, but must not keep the call beyond its deadline.
+    // What came in together with the end of the wait is taken all the same. Error reports, CAN FD
+    // frames and news of other interfaces end a poll() too, but must not keep the call beyond its
+    // deadline.
     while (count == 0 && woken == Result::ok) {
       woken = wait(deadline.remaining());
       count = woken == Result::closed ? 0 : take(frames);
@@ -97,6 +98,11 @@ std::size_t Receiver::take_batch(std::size_t wanted) {
 bool Receiver::accept(std::size_t slot, Received& received) {
   const mmsghdr& message = messages_[slot];
   read_control(message.msg_hdr, received.time);
+  // The one thing that is longer.
+  if ((message.msg_hdr.msg_flags & MSG_TRUNC) != 0) {
+    fd_frames_.fetch_add(1, std::memory_order_relaxed);
+    return false;
+  }
   if (message.msg_len != sizeof(can_frame)) {
     return false;
   }
@@ -131,6 +137,11 @@ void Receiver::read_control(const msghdr& header, Timestamp& time) {
     }
   }
   time = Timestamp(std::chrono::seconds(stamp.tv_sec) + std::chrono::nanoseconds(stamp.tv_nsec));
+}
+
+void Receiver::fill(Statistics& statistics) const noexcept {
+  statistics.received = received_.load(std::memory_order_relaxed);
+  statistics.fd_frames = fd_frames_.load(std::memory_order_relaxed);
 }
 
 }  // namespace roio::socketcan

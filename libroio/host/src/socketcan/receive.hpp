@@ -18,7 +18,7 @@
 
 namespace roio::socketcan {
 
-/// The receiving side of a link, for one thread at a time (received() for any).
+/// The receiving side of a link, for one thread at a time (fill() for any).
 class Receiver {
  public:
   Receiver(Link& link, const Waits& waits, bool error_frames);
@@ -26,9 +26,8 @@ class Receiver {
   /// Bus::receive().
   Transfer receive(std::span<Received> frames, Timeout timeout);
 
-  [[nodiscard]] std::uint64_t received() const noexcept {
-    return received_.load(std::memory_order_relaxed);
-  }
+  /// Writes received and fd_frames.
+  void fill(Statistics& statistics) const noexcept;
 
  private:
   static constexpr std::size_t batch_size = 64;  // frames in one system call
@@ -55,6 +54,7 @@ class Receiver {
   std::uint32_t drops_ = 0;        // the kernel's count with the last frame
   std::uint64_t lost_before_ = 0;  // owed to the next frame that is returned
   std::atomic<std::uint64_t> received_{0};
+  std::atomic<std::uint64_t> fd_frames_{0};
 };
 
 }  // namespace roio::socketcan

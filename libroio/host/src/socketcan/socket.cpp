@@ -54,6 +54,8 @@ void set_up(int socket, const std::string& interface_name) {
   require(set_option(socket, SOL_SOCKET, SO_TIMESTAMPNS, 1), interface_name);
   require(set_option(socket, SOL_SOCKET, SO_RXQ_OVFL, 1), interface_name);
   require(set_option(socket, SOL_CAN_RAW, CAN_RAW_ERR_FILTER, CAN_ERR_MASK), interface_name);
+  // Else they would pass unseen. What is sent stays classic, and the same filters apply.
+  require(set_option(socket, SOL_CAN_RAW, CAN_RAW_FD_FRAMES, 1), interface_name);
   require(set_option(socket, SOL_SOCKET, SO_SNDBUF, send_buffer_bytes), interface_name);
   // Beyond net.core.rmem_max only with CAP_NET_ADMIN; others get as much as is allowed.
   if (set_option(socket, SOL_SOCKET, SO_RCVBUFFORCE, receive_buffer_bytes) != 0) {

@@ -39,6 +39,15 @@ class Cursor {
     return line_.substr(start, at_ - start);
   }
 
+  /// The same, but blanks before the mark do not end it.
+  std::string_view word_through(char mark) {
+    const std::size_t start = at_;
+    const std::size_t found = line_.find(mark, at_);
+    at_ = found == std::string_view::npos ? at_ : found;
+    word();
+    return line_.substr(start, at_ - start);
+  }
+
   void skip_blanks() {
     while (at_ < line_.size() && is_blank(line_[at_])) {
       ++at_;
@@ -88,6 +97,10 @@ Parsed<Timestamp> read_time(std::string_view word) {
   return *timestamp;
 }
 
+bool is_bracketed(std::string_view word) {
+  return word.starts_with('(') && word.ends_with(')');
+}
+
 bool is_control(char character) {
   return static_cast<unsigned char>(character) < ' ' || character == '\x7F';
 }
@@ -133,13 +146,17 @@ std::optional<ParseError> check_rest(Cursor cursor) {
                     more.empty() ? offset : cursor.offset() - more.size()};
 }
 
-Parsed<LogLine> read_log_line(std::string_view line) {
+enum class TimeWanted : bool { no, yes };
+
+Parsed<LogLine> read_log_line(std::string_view line, TimeWanted wanted) {
   if (line.empty()) {
     return ParseError{"empty; expected (SECONDS.FRACTION) INTERFACE FRAME", 0};
   }
   Cursor cursor(line);
-  const Parsed<Timestamp> time = read_time(cursor.word());
-  if (!time) {
+  const std::string_view brackets =
+      wanted == TimeWanted::yes ? cursor.word() : cursor.word_through(')');
+  const Parsed<Timestamp> time = read_time(brackets);
+  if (!time && (wanted == TimeWanted::yes || !is_bracketed(brackets))) {
     return time.error();
   }
   cursor.skip_blanks();
@@ -158,7 +175,7 @@ Parsed<LogLine> read_log_line(std::string_view line) {
   if (const auto error = check_rest(cursor)) {
     return *error;
   }
-  return LogLine{*time, std::string(name), *frame};
+  return LogLine{time ? *time : Timestamp{}, std::string(name), *frame};
 }
 
 char* write_time(char* out, Timestamp time) noexcept {
@@ -175,7 +192,12 @@ char* write_time(char* out, Timestamp time) noexcept {
 
 Parsed<LogLine> parse_log_line(std::string_view line) {
   line = without_line_end(line);
-  return in_context("log line", line, read_log_line(line));
+  return in_context("log line", line, read_log_line(line, TimeWanted::yes));
+}
+
+Parsed<LogLine> parse_log_line_of_any_time(std::string_view line) {
+  line = without_line_end(line);
+  return in_context("log line", line, read_log_line(line, TimeWanted::no));
 }
 
 std::size_t format_log_line(std::span<char, max_log_line> out, Timestamp time,

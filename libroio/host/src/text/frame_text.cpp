@@ -1,5 +1,5 @@
 // One frame as can-utils write it: ID#DATA, ID#R and ID#Rn.
-// Source: can-utils 2020.11 lib.c, parse_canframe() and sprint_canframe().
+// Source: can-utils 2020.11 lib.c, parse_canframe() and sprint_canframe(); the length code of 2021.
 #include "text/frame_text.hpp"
 
 #include <algorithm>
@@ -100,6 +100,14 @@ Parsed<Frame> make_remote(Identifier identifier, std::string_view length, std::s
                {}};
 }
 
+/// "_9" to "_F" at the end, which tells the length code of a frame of 8 bytes
+/// (CAN_CTRLMODE_CC_LEN8_DLC).
+std::size_t length_code_size(std::string_view text) {
+  const bool there = text.size() >= 2 && text[text.size() - 2] == '_' &&
+                     hex_value(text.back()) > max_data_length && hex_value(text.back()) <= 15;
+  return there ? 2 : 0;
+}
+
 // cansend also takes one dot before the first byte and one after the last.
 std::size_t strip_outer_dots(std::string_view& data) {
   const std::size_t leading = data.starts_with('.') ? 1 : 0;
@@ -152,11 +160,18 @@ Parsed<Frame> read_frame(std::string_view text) {
   if (!identifier) {
     return identifier.error();
   }
-  const std::string_view rest = text.substr(hash + 1);
-  if (rest.starts_with('R') || rest.starts_with('r')) {
-    return make_remote(*identifier, rest.substr(1), hash + 2);
+  std::string_view rest = text.substr(hash + 1);
+  const std::size_t code_size = length_code_size(rest);
+  rest.remove_suffix(code_size);
+  const Parsed<Frame> frame = rest.starts_with('R') || rest.starts_with('r')
+                                  ? make_remote(*identifier, rest.substr(1), hash + 2)
+                                  : make_data(*identifier, rest, hash + 1);
+  if (frame && code_size > 0 && frame->length != max_data_length) {
+    return ParseError{"length code " + quote(text.substr(text.size() - code_size)) + " with " +
+                          std::to_string(frame->length) + " bytes; expected it with 8 only",
+                      text.size() - code_size};
   }
-  return make_data(*identifier, rest, hash + 1);
+  return frame;
 }
 
 char* write_frame(char* out, const Frame& frame) noexcept {

@@ -22,6 +22,26 @@ inline std::size_t lane_in_driver(const Frame& frame) noexcept {
                                                                                      : normal_lane;
 }
 
+/// OpenOptions::in_order for such backends: when a frame may be put in its lane. One of the other
+/// lane waits until all before it have gone: an urgent one would pass them, and a normal one may
+/// find a transmit buffer of its own free while urgent ones still wait for theirs.
+class LaneOrder {
+ public:
+  /// @param in_order false: always.
+  explicit LaneOrder(bool in_order) : in_order_(in_order) {}
+
+  /// @param all_gone whether nothing that was accepted is still on its way. The sender has to be
+  ///        woken (see send_queued()) when that becomes so.
+  [[nodiscard]] bool admits(std::size_t lane, bool all_gone) const noexcept {
+    return !in_order_ || lane == last_ || all_gone;
+  }
+  void accepted(std::size_t lane) noexcept { last_ = lane; }
+
+ private:
+  bool in_order_;
+  std::size_t last_ = normal_lane;  // of the frame accepted last
+};
+
 }  // namespace roio
 
 #endif
