@@ -35,6 +35,8 @@ class Category final : public std::error_category {
         return "nobody carries it, or not in time";
       case Errc::carrier_stopped:
         return "it carries the bus and has been stopped; `fg` or `kill -CONT` lets it go on";
+      case Errc::carried_already:
+        return "another program is there to carry it";
       case Errc::bus_full:
         return "256 programs are on the bus, as many as it takes";
       case Errc::no_such_port:

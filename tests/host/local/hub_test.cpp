@@ -13,6 +13,8 @@
 #include <roio.hpp>
 #include <thread>
 
+#include "local/memory.hpp"
+#include "local/place.hpp"
 #include "process.hpp"
 
 namespace roio {
@@ -70,7 +72,7 @@ bool becomes(const Bus& bus, std::size_t listeners) {
 
 TEST(LocalBus, WhoOnlyJoinsCarriesItForNobody) {
   const std::string name = "local:" + unique_name();
-  const OpenOptions joining{.open_timeout = 50ms, .join_only = true};
+  const OpenOptions joining{.open_timeout = 50ms, .carry = Carry::never};
   try {
     const auto bus = open(name, joining);
     ADD_FAILURE() << "it opened though nobody carries the bus";
@@ -78,7 +80,7 @@ TEST(LocalBus, WhoOnlyJoinsCarriesItForNobody) {
     EXPECT_EQ(error.code(), make_error_code(Errc::not_connected)) << error.what();
   }
   auto carrier = open(name);
-  const auto joined = open(name, {.open_timeout = 30s, .join_only = true});
+  const auto joined = open(name, {.open_timeout = 30s, .carry = Carry::never});
   EXPECT_TRUE(becomes(*carrier, 1));
   carrier.reset();
   for (int tries = 0; tries < 30000 && joined->state() != BusState::absent; ++tries) {
@@ -90,6 +92,109 @@ TEST(LocalBus, WhoOnlyJoinsCarriesItForNobody) {
   ASSERT_EQ(joined->send(Frame{0x1000400A, FrameKind::extended, 0, {}}, 30s), Result::ok);
   Received received{};
   EXPECT_EQ(next->receive(received, 30s), Result::ok);
+}
+
+// Bounded; by a second look at who answers.
+bool is_carried_by(const std::string& name, pid_t process) {
+  for (const auto end = std::chrono::steady_clock::now() + 30s;
+       std::chrono::steady_clock::now() < end; std::this_thread::sleep_for(1ms)) {
+    const auto hub = local::Place(name).find();
+    if (hub && hub->process == process) {
+      return true;
+    }
+  }
+  return false;
+}
+
+TEST(LocalBus, WhoIsThereToCarryItTakesItOverAndLosesNothing) {
+  const std::string name = unique_name();
+  const std::string url = "local:" + name;
+  Peer first({"hold", url});
+  ASSERT_EQ(first.line(), "open");
+  const auto receiver = open(url, {.carry = Carry::never});
+  const auto sender = open(url, {.send_only = true, .carry = Carry::never});
+  ASSERT_EQ(sender->send(Frame{1, FrameKind::standard, 0, {}}, 30s), Result::ok);
+  Peer host({"carry", url});
+  ASSERT_EQ(host.line(), "open");
+  EXPECT_TRUE(is_carried_by(name, host.pid()));
+  ASSERT_EQ(sender->send(Frame{2, FrameKind::standard, 0, {}}, 30s), Result::ok);
+  Received received{};
+  for (const std::uint32_t id : {1U, 2U}) {
+    ASSERT_EQ(receiver->receive(received, 30s), Result::ok);
+    EXPECT_EQ(received.frame.id, id);
+    EXPECT_EQ(received.lost_before, 0U);
+  }
+  host.kill();
+  EXPECT_TRUE(is_carried_by(name, first.pid())) << "who had it before is still there";
+  Peer next({"carry", url});
+  ASSERT_EQ(next.line(), "open");
+  EXPECT_TRUE(is_carried_by(name, next.pid()));
+}
+
+TEST(LocalBus, TwoAreNotThereToCarryIt) {
+  const std::string url = "local:" + unique_name();
+  Peer host({"carry", url});
+  ASSERT_EQ(host.line(), "open");
+  try {
+    const auto bus = open(url, {.open_timeout = 30s, .carry = Carry::always});
+    ADD_FAILURE() << "opened";
+  } catch (const std::system_error& error) {
+    EXPECT_EQ(error.code(), make_error_code(Errc::carried_already));
+    EXPECT_EQ(std::string(error.what()), url + ": process " + std::to_string(host.pid()) +
+                                             " (local_peer): another program is there to carry it");
+  }
+}
+
+TEST(LocalBus, WithoutWaitingABusThatIsThereIsOpened) {
+  const std::string url = "local:" + unique_name();
+  EXPECT_NO_THROW(open(url, {.open_timeout = no_wait})) << "one that it carries itself";
+  EXPECT_THROW(open(url, {.open_timeout = no_wait, .carry = Carry::never}), std::system_error);
+  const auto carrier = open(url);
+  EXPECT_NO_THROW(open(url, {.open_timeout = no_wait, .carry = Carry::never}));
+}
+
+TEST(LocalBus, WhoseCarrierIsStoppedIsDownAndSaysWhich) {
+  const std::string url = "local:" + unique_name();
+  Peer carrier({"hold", url});
+  ASSERT_EQ(carrier.line(), "open");
+  const auto bus = open(url, {.carry = Carry::never});
+  EXPECT_EQ(bus->state(), BusState::active);
+  carrier.signal(SIGSTOP);
+  for (int tries = 0; tries < 30000 && bus->state() == BusState::active; ++tries) {
+    std::this_thread::sleep_for(1ms);
+  }
+  EXPECT_EQ(bus->state(), BusState::down);
+  EXPECT_EQ(refusal(url), url + ": process " + std::to_string(carrier.pid()) +
+                              " (local_peer): it carries the bus and has been stopped; `fg` or "
+                              "`kill -CONT` lets it go on");
+  carrier.signal(SIGCONT);
+  EXPECT_EQ(refusal(url), "(opened)");
+}
+
+TEST(LocalBus, TakesSoManyProgramsAndTellsTheNextOne) {
+  const std::string url = "local:" + unique_name();
+  std::vector<std::unique_ptr<Bus>> all;
+  for (std::size_t i = 0; i < local::max_clients; ++i) {
+    all.push_back(open(url, {.send_only = true, .open_timeout = 30s}));
+  }
+  EXPECT_EQ(refusal(url), url + ": 256 programs are on the bus, as many as it takes");
+  ASSERT_EQ(all.back()->send(Frame{1, FrameKind::standard, 0, {}}, 30s), Result::ok);
+  all.back().reset();
+  EXPECT_EQ(refusal(url), "(opened)") << "once one has gone";
+}
+
+TEST(LocalBus, WhoseFilesAreRemovedComesTogetherAgain) {
+  const RuntimeFolder folder(unique_name());
+  const auto first = open("local:cleaned");
+  const auto second = open("local:cleaned");
+  std::filesystem::remove_all(folder.path());
+  const auto newcomer = open("local:cleaned");
+  EXPECT_TRUE(becomes(*newcomer, 2)) << "there is one bus of that name";
+  ASSERT_EQ(first->send(Frame{1, FrameKind::standard, 0, {}}, 30s), Result::ok);
+  Received received{};
+  EXPECT_EQ(second->receive(received, 30s), Result::ok);
+  EXPECT_EQ(newcomer->receive(received, 30s), Result::ok);
+  EXPECT_GE(first->statistics().outages, 1U);
 }
 
 TEST(LocalBus, TellsHowManyOthersListen) {

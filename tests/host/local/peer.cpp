@@ -156,7 +156,12 @@ int main(int argc, char** argv) {
   constexpr std::uint64_t frames_of_a_shot = 20;
   roio::OpenOptions options;
   options.send_only = mode == "send" || mode == "pour" || mode == "shot";
-  options.join_only = mode == "listen" || mode == "pour" || mode == "shot";
+  if (mode == "listen" || mode == "pour" || mode == "shot") {
+    options.carry = roio::Carry::never;
+  }
+  if (mode == "carry") {
+    options.carry = roio::Carry::always;
+  }
   options.open_timeout = 30s;
   const auto bus = roio::open(argc > 2 ? argv[2] : "", options);
   say("open");

@@ -122,7 +122,7 @@ Account stopped_over_two_hubs(std::uint64_t count) {
   Peer reader({"listen", url});
   EXPECT_EQ(reader.line(), "open");
   reader.signal(SIGSTOP);
-  const auto bus = open(url, {.send_only = true, .join_only = true});
+  const auto bus = open(url, {.send_only = true, .carry = Carry::never});
   expect_sent(*bus, 0, count / 3);
   killed.kill();
   Peer ended({"hold", url});

@@ -7,10 +7,11 @@ _roio_cli_buses() {
     # 280: ARPHRD_CAN
     read -r type 2>/dev/null <"$folder/type" && [ "$type" = 280 ] && echo "${folder##*/}"
   done
-  for socket in "${ROIO_RUNTIME_DIR:-/tmp/roio-$UID}"/*.sock; do
+  for socket in "${ROIO_RUNTIME_DIR:-/run/user/$UID/roio}"/*.sock \
+    "${ROIO_RUNTIME_DIR:-/tmp/roio-$UID}"/*.sock; do
     socket=${socket##*/}
     [ "$socket" = '*.sock' ] || echo "local:${socket%.sock}"
-  done
+  done | sort -u
 }
 
 # Serial ports where a bridge may be; opening them to see would restart what else is there.
@@ -39,7 +40,7 @@ _roio_cli_arguments_before() {
 _roio_cli_words() {
   local command=${COMP_WORDS[1]} previous=${COMP_WORDS[COMP_CWORD - 1]}
   if [ "$COMP_CWORD" -eq 1 ]; then
-    echo send dump buses bridge help --help --version
+    echo send dump buses hub bridge help --help --version
     return
   fi
   case $previous in
@@ -53,9 +54,11 @@ _roio_cli_words() {
     send:-*) echo --from --urgent --class --count --interval --timeout --wait --dec --help; return ;;
     dump:-*) echo -n -T -t --log --json --no-foreign --errors --verbose --help; return ;;
     buses:-*) echo --json --help; return ;;
+    hub:-*) echo --bitrate --help; return ;;
     send:* | dump:*) ;;
+    hub:*) _roio_cli_buses; return ;;
     bridge:*) _roio_cli_bridge_words; return ;;
-    help:*) [ "$COMP_CWORD" -eq 2 ] && echo send dump buses bridge; return ;;
+    help:*) [ "$COMP_CWORD" -eq 2 ] && echo send dump buses hub bridge; return ;;
     *) return ;;
   esac
   if [ "$(_roio_cli_arguments_before 2)" -eq 0 ]; then

@@ -8,9 +8,9 @@ function __roio_cli_buses
             basename $folder
         end
     end
-    set -l buses $ROIO_RUNTIME_DIR
-    test -n "$buses"; or set buses /tmp/roio-(id -u)
-    for socket in $buses/*.sock
+    set -l folders $ROIO_RUNTIME_DIR
+    test -n "$folders"; or set folders /run/user/(id -u)/roio /tmp/roio-(id -u)
+    for socket in $folders/*.sock
         echo local:(string replace -r '\.sock$' '' (string replace -r '.*/' '' $socket))
     end
 end
@@ -64,6 +64,7 @@ complete -c roio-cli -f
 complete -c roio-cli -n __fish_use_subcommand -a send -d 'Send a message, or lines of them'
 complete -c roio-cli -n __fish_use_subcommand -a dump -d 'Show what is on a bus'
 complete -c roio-cli -n __fish_use_subcommand -a buses -d 'List the buses that can be opened'
+complete -c roio-cli -n __fish_use_subcommand -a hub -d 'Carry a local bus until a signal'
 complete -c roio-cli -n __fish_use_subcommand -a bridge -d 'Show, set and use a bridge on a serial port'
 complete -c roio-cli -n __fish_use_subcommand -a help -d 'Print the help of a command'
 complete -c roio-cli -n __fish_use_subcommand -l version -d 'Print the version and end'
@@ -89,7 +90,10 @@ complete -c roio-cli -n '__fish_seen_subcommand_from dump' -l errors -d 'Show er
 complete -c roio-cli -n '__fish_seen_subcommand_from dump' -s v -l verbose -d 'Say when listening, and counts'
 complete -c roio-cli -n '__fish_seen_subcommand_from dump; and not __roio_cli_needs_bus' -a 'to= from= urgent normal class=message class=system class=stream or'
 
-complete -c roio-cli -n 'set -l words (commandline -opc); test (count $words) = 2; and test $words[2] = help' -a 'send dump buses bridge'
+complete -c roio-cli -n 'set -l words (commandline -opc); test (count $words) = 2; and test $words[2] = help' -a 'send dump buses hub bridge'
+
+complete -c roio-cli -n '__fish_seen_subcommand_from hub' -l bitrate -x -d 'Pace of the bus, bit/s'
+complete -c roio-cli -n '__fish_seen_subcommand_from hub; and __roio_cli_needs_bus' -a '(__roio_cli_buses)'
 
 complete -c roio-cli -n '__fish_seen_subcommand_from buses' -l json -d 'JSON lines'
 

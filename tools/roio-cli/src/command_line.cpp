@@ -7,6 +7,7 @@
 
 #include "bridge_words.hpp"
 #include "dump_words.hpp"
+#include "hub_words.hpp"
 #include "send_words.hpp"
 #include "words.hpp"
 
@@ -40,7 +41,7 @@ constexpr const char* help_examples = R"(Examples:
   roio-cli help send
   roio-cli help bridge set)";
 
-constexpr const char* commands = "send, dump, buses, bridge or help";
+constexpr const char* commands = "send, dump, buses, hub, bridge or help";
 
 /// The words with `help COMMAND` said as `COMMAND --help`.
 std::vector<const char*> with_help(int argc, const char* const* argv) {
@@ -79,7 +80,7 @@ const CLI::App& last_command(const CLI::App& app) {
 
 Command parse_command_line(int argc, const char* const* argv) {
   CLI::App app("Sends and shows Roio messages on a CAN bus, and looks after bridges.");
-  prepare(app, "send|dump|buses|bridge [OPTIONS] ...", main_examples);
+  prepare(app, "send|dump|buses|hub|bridge [OPTIONS] ...", main_examples);
   bool version = false;
   app.add_flag("--version", version, "Print the version and end")->disable_flag_override();
   app.require_subcommand(0, 1);
@@ -88,6 +89,7 @@ Command parse_command_line(int argc, const char* const* argv) {
   CLI::App& buses_app = *app.add_subcommand("buses", "List the buses that can be opened");
   prepare(buses_app, "buses [OPTIONS]", buses_examples);
   const CLI::Option* buses_json = flag(buses_app, "--json", "JSON lines");
+  const HubWords hub_words(app);
   const BridgeWords bridge_words(app);
   prepare(*app.add_subcommand("help", "Print the help of a command"), "help [COMMAND...]",
           help_examples);
@@ -119,6 +121,9 @@ Command parse_command_line(int argc, const char* const* argv) {
   if (buses_app.parsed()) {
     refuse_rest(buses_app, "buses");
     return BusesOptions{buses_json->count() > 0};
+  }
+  if (hub_words.parsed()) {
+    return hub_words.parse();
   }
   if (bridge_words.parsed()) {
     return bridge_words.parse();

@@ -9,6 +9,7 @@
 #include "bridge.hpp"
 #include "buses.hpp"
 #include "dump.hpp"
+#include "hub.hpp"
 #include "send.hpp"
 
 namespace roio::cli {
@@ -18,8 +19,9 @@ struct Information {
   std::string text;
 };
 
-using Command = std::variant<Information, SendOptions, DumpOptions, BusesOptions, BridgeShowOptions,
-                             BridgeSetOptions, BridgeIdentifyOptions, BridgeAttachOptions>;
+using Command =
+    std::variant<Information, SendOptions, DumpOptions, BusesOptions, HubOptions, BridgeShowOptions,
+                 BridgeSetOptions, BridgeIdentifyOptions, BridgeAttachOptions>;
 
 /// @throws UsageError: what was wrong with the words, and what was expected.
 Command parse_command_line(int argc, const char* const* argv);

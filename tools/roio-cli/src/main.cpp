@@ -26,6 +26,10 @@ int run(const DumpOptions& options) {
   const Interrupt interrupt;
   return dump(options);
 }
+int run(const HubOptions& options) {
+  const Interrupt interrupt;
+  return hub(options);
+}
 int run(const BridgeAttachOptions& options) {
   const Interrupt interrupt;
   return bridge_attach(options);

@@ -31,24 +31,33 @@ constexpr std::uint64_t max_named_lines = 10;
                 std::to_string(options.wait->count()) + " ms; nothing was sent");
 }
 
-/// Who waits for a listener leaves the bus to it: a program that carries the bus, sends and is gone
-/// would have the listener look for another one just then.
+/// Who waits for a listener, or sends one message and is gone, leaves it to others to carry the
+/// bus.
+/// @return null: nobody does, and none is waited for.
 std::unique_ptr<Bus> open_bus(const SendOptions& options) {
   OpenOptions open_options;
   open_options.send_only = true;
   open_options.in_order = !options.frame;  // what was recorded comes out as it was
-  if (!options.wait) {
+  const bool one = options.frame && options.count == 1;
+  if (!options.wait && !one) {
     return open_until_signal(options.bus, open_options);
   }
-  open_options.join_only = true;
-  open_options.open_timeout = *options.wait;
+  open_options.carry = Carry::never;
+  if (options.wait) {
+    open_options.open_timeout = *options.wait;
+  } else if (parse_bus_url(options.bus)->kind == BusUrl::Kind::local) {
+    open_options.open_timeout = no_wait;
+  }
   try {
     return open_until_signal(options.bus, open_options);
   } catch (const std::system_error& error) {
-    if (error.code() == Errc::not_connected) {
+    if (error.code() != Errc::not_connected) {
+      throw;
+    }
+    if (options.wait) {
       fail_for_want_of_listeners(options);
     }
-    throw;
+    return nullptr;
   }
 }
 
@@ -233,18 +242,8 @@ Unsent send_lines(const SendOptions& options, Sender& sender) {
   return lines.unsent();
 }
 
-// Who was on the bus under a hub that has just gone comes over to this process's within moments,
-// and is given what it missed.
-void wait_for_those_who_come_over(const Bus& bus) {
-  const auto end = std::chrono::steady_clock::now() + std::chrono::milliseconds(250);
-  while (bus.statistics().unheard > 0 && std::chrono::steady_clock::now() < end &&
-         Interrupt::sleep_until(std::chrono::steady_clock::now() + look_every)) {
-  }
-}
-
 // What send() accepted and close() could not hand over.
 void close(Bus& bus) {
-  wait_for_those_who_come_over(bus);
   bus.close();
   if (const std::uint64_t unheard = bus.statistics().unheard; unheard > 0) {
     note(bus.name() + ": nobody else was there to have " + count_of(unheard, "message"));
@@ -288,6 +287,10 @@ int send(const SendOptions& options) {
   const auto end =
       std::chrono::steady_clock::now() + options.wait.value_or(std::chrono::milliseconds(0));
   const auto bus = open_bus(options);
+  if (!bus) {
+    note(options.bus + ": nobody else was there to have 1 message");
+    return exit_success;
+  }
   const CancelOnSignal cancel_on_signal(*bus);
   Sender sender(options, *bus);
   Unsent unsent;

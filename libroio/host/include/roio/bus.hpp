@@ -87,6 +87,16 @@ struct Statistics {
                                  ///< are counted, and not returned.
 };
 
+/// Whether this program carries a local bus for all: one of those on it does.
+enum class Carry : std::uint8_t {
+  if_needed,  ///< When nobody else does, at first or later.
+  never,      ///< For programs that come and go. open() throws Errc::not_connected when nobody
+              ///< carries it in time; the bus is absent while nobody does.
+  always,     ///< For a program that is there for this. It takes the bus over from whoever has it,
+              ///< and the others leave it to this one; open() throws Errc::carried_already when
+              ///< there is such a program.
+};
+
 struct OpenOptions {
   /// Also return the controller's error reports (FrameKind::error) from receive(). They are decoded
   /// into state() and statistics() either way.
@@ -96,10 +106,8 @@ struct OpenOptions {
   /// How long open() may wait for the bus (a hub that is just starting or leaving, a board that is
   /// reset when its port is opened).
   Timeout open_timeout = std::chrono::seconds(5);
-  /// A local bus: be there only while another program carries it, and never carry it for others.
-  /// open() waits for such a program, and throws Errc::not_connected when none comes in time; the
-  /// bus is absent while there is none. For programs that come and go. Others take no notice.
-  bool join_only = false;
+  /// Of a local bus. Other kinds take no notice.
+  Carry carry = Carry::if_needed;
   /// Frames go out exactly in the order in which send() is given them: an urgent one waits until
   /// all before it have gone, and passes none. For replaying what was recorded. Costs a round trip
   /// to the bus wherever the priority changes.

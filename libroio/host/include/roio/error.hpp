@@ -22,6 +22,7 @@ enum class Errc {
   bad_frame,            ///< A frame that no bus carries: id, length or kind out of range.
   not_connected,        ///< The local bus could not be reached or taken over in time.
   carrier_stopped,      ///< The program that carries the local bus has been stopped (Ctrl-Z).
+  carried_already,      ///< Another program is there to carry the local bus, always.
   bus_full,             ///< The local bus has as many programs as it takes.
   no_such_port,         ///< No serial port of that name.
   not_a_port,           ///< It exists and is no serial port.

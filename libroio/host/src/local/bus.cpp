@@ -38,7 +38,7 @@ class LocalBus final : public Bus {
   LocalBus(const std::string& bus_name, std::optional<std::uint32_t> bitrate_bps,
            const OpenOptions& options)
       : name_("local:" + bus_name),
-        connector_(bus_name, bitrate_bps, !options.join_only),
+        connector_(bus_name, bitrate_bps, options.carry),
         inbox_(connector_.client(), first_filters(options)),
         outbox_(options.in_order) {
     auto connection = connector_.connect(Deadline(options.open_timeout), stop_);

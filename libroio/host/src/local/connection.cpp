@@ -1,7 +1,9 @@
 #include "local/connection.hpp"
 
 #include <poll.h>
+#include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <chrono>
 #include <random>
@@ -15,6 +17,8 @@ using std::chrono::milliseconds;
 
 // A hub answers in microseconds. One that does not may be about to leave: then ask again.
 constexpr milliseconds greeting_time{500};
+// In which a bus whose hub has gone has another, or is left to one who is there for that.
+constexpr milliseconds takeover_time{200};
 constexpr milliseconds first_pause{1};
 constexpr milliseconds longest_pause{20};
 
@@ -31,34 +35,77 @@ bool wait_readable(int fd, milliseconds limit, const Deadline& deadline, const E
          entries[1].revents == 0;
 }
 
+bool is_memory_of(int lock_fd, std::uint64_t identity) {
+  const MemoryView memory(lock_fd);
+  return memory && memory->header.identity.load(std::memory_order_relaxed) == identity;
+}
+
 }  // namespace
 
 Connector::Connector(const std::string& bus_name, std::optional<std::uint32_t> bitrate_bps,
-                     bool may_be_hub)
+                     Carry carry)
     : bus_name_(bus_name),
       bitrate_bps_(bitrate_bps),
-      may_be_hub_(may_be_hub),
+      carry_(carry),
       client_(random_client()),
       place_(bus_name) {}
 
 std::optional<Connection> Connector::connect(const Deadline& deadline, const EventFlag& stop) {
   silent_hub_.reset();
+  const Deadline taken_over(takeover_time);
   for (milliseconds pause = first_pause; !stop.is_set();
        pause = std::min(pause * 2, longest_pause)) {
     if (auto hub = place_.find()) {
       if (auto connection = greet(std::move(*hub), stop)) {
         return connection;
       }
-    } else if (auto seat = may_be_hub_ ? place_.claim() : std::nullopt) {
+    } else if (auto seat = may_claim(taken_over) ? place_.claim() : std::nullopt) {
       hub_ = std::make_unique<Hub>(std::move(*seat), bitrate_bps_);
       continue;
     }
-    if (deadline.passed()) {
+    if (deadline.passed() && (taken_over.passed() || !is_between_hubs())) {
       break;
     }
-    static_cast<void>(wait_readable(-1, pause, deadline, stop));
+    static_cast<void>(
+        wait_readable(-1, pause, Deadline(std::max<Timeout>(deadline.remaining(), pause)), stop));
   }
   return std::nullopt;
+}
+
+/// Whether this client may be the hub now. @param others_first how long it is left to another that
+/// is there for it, and has not come yet.
+bool Connector::may_claim(const Deadline& others_first) const {
+  if (carry_ == Carry::never) {
+    return false;
+  }
+  if (others_first.passed()) {
+    return true;
+  }
+  const std::vector<std::string> paths = place_.lock_paths();
+  return std::none_of(paths.begin(), paths.end(), [this](const std::string& path) {
+    const std::uint64_t host = MemoryView(path).host();
+    return host != 0 && host != client_;
+  });
+}
+
+/// Whether a bus is there, and one of its clients about to carry it.
+bool Connector::is_between_hubs() const {
+  const std::vector<std::string> paths = place_.lock_paths();
+  return std::any_of(paths.begin(), paths.end(),
+                     [](const std::string& path) { return MemoryView(path).has_clients(); });
+}
+
+/// @throws Errc::carried_already.
+bool Connector::is_to_ask_for_the_seat(const Place::Hub& hub) const {
+  if (carry_ != Carry::always || hub.process == ::getpid()) {
+    return false;
+  }
+  const std::uint64_t host = MemoryView(hub.lock_path).host();
+  if (host != 0 && host != client_) {
+    throw std::system_error(Errc::carried_already,
+                            "local:" + bus_name_ + ": " + describe_process(hub.process));
+  }
+  return true;
 }
 
 std::system_error Connector::why_not() const {
@@ -71,12 +118,14 @@ std::system_error Connector::why_not() const {
 
 std::optional<Connection> Connector::greet(Place::Hub hub, const EventFlag& stop) {
   static_assert(sizeof(Welcome) >= sizeof(Refused), "read before it is known which one comes");
+  const bool ask = is_to_ask_for_the_seat(hub);
   if (!presence_.is_at(hub.lock_path)) {
     presence_ = Presence(hub.lock_path, client_);
   }
   Stream stream(std::move(hub.socket));
   append_record(stream.out(),
-                Hello{magic, protocol_version, 0, client_, bitrate_bps_.value_or(0), 0});
+                Hello{magic, protocol_version, ask ? std::uint16_t{1} : std::uint16_t{0}, client_,
+                      bitrate_bps_.value_or(0), 0});
   if (!presence_.shown() || !stream.flush() || !stream.flushed()) {
     return std::nullopt;  // that hub is leaving
   }

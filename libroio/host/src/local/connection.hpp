@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <roio/bus.hpp>
 #include <roio/parts/deadline.hpp>
 #include <string>
 
@@ -30,13 +31,14 @@ class Connector {
  public:
   /// @param bitrate_bps what the bus must run at; none: whatever it does, and no limit for a hub
   /// here.
-  /// @param may_be_hub else only other processes are.
+  /// @param carry whether the hub may be here.
   /// @throws std::system_error: see Place.
-  Connector(const std::string& bus_name, std::optional<std::uint32_t> bitrate_bps, bool may_be_hub);
+  Connector(const std::string& bus_name, std::optional<std::uint32_t> bitrate_bps, Carry carry);
 
   /// @param stop gives up when it is set.
   /// @return none: not before the deadline, or stopped; why_not() says why.
-  /// @throws Errc::bitrate_mismatch, version_mismatch, bus_full, not_permitted; system errors.
+  /// @throws Errc::bitrate_mismatch, version_mismatch, bus_full, carried_already, not_permitted;
+  /// system errors.
   std::optional<Connection> connect(const Deadline& deadline, const EventFlag& stop);
 
   /// This client's number.
@@ -51,12 +53,15 @@ class Connector {
   void leave() { hub_.reset(); }
 
  private:
+  [[nodiscard]] bool is_to_ask_for_the_seat(const Place::Hub& hub) const;
+  [[nodiscard]] bool may_claim(const Deadline& others_first) const;
+  [[nodiscard]] bool is_between_hubs() const;
   std::optional<Connection> greet(Place::Hub hub, const EventFlag& stop);
   [[noreturn]] void throw_refused(const Refused& refused) const;
 
   std::string bus_name_;
   std::optional<std::uint32_t> bitrate_bps_;
-  const bool may_be_hub_;
+  const Carry carry_;
   std::uint64_t client_;
   Place place_;
   std::unique_ptr<Hub> hub_;

@@ -101,7 +101,7 @@ std::uint32_t Hub::window() const {
 // Without memory it cannot go on; what it had is with the others, and one of them may.
 void Hub::run() {
   try {
-    while (!stop_.is_set() && !out_of_place_) {
+    while (!stop_.is_set() && !is_over_) {
       serve();
     }
   } catch (const std::bad_alloc&) {
@@ -157,7 +157,7 @@ std::chrono::nanoseconds Hub::time_to_wait() const {
 
 void Hub::look_after_everybody() {
   look_again_ = now_ + look_interval;
-  out_of_place_ = !seat_.is_in_place();
+  is_over_ = is_over_ || !seat_.is_in_place();
   for (const auto& client : clients_) {
     if (client->greeting_overdue(now_)) {
       cut(*client);
@@ -255,6 +255,10 @@ void Hub::greet(HubClient& client, const Hello& hello) {
     refuse(Errc::bitrate_mismatch);
   } else if (!is_present(seat_.lock_fd(), hello.client)) {
     cut(client);
+  } else if (hello.host != 0) {
+    // Its seat from now on. This hub goes, and that client finds it free.
+    memory_->header.host.store(hello.client, std::memory_order_seq_cst);
+    is_over_ = true;
   } else if (const bool fresh = !slot_of(hello.client); auto slot = give_slot(hello.client)) {
     medium_->drop_station_of(hello.client);
     auto station = std::make_shared<Station>(hello.client, *slot);

@@ -88,8 +88,8 @@ class Hub {
   std::int64_t wall_offset_ns_ = 0;  // wall clock minus steady clock, looked at once a round
   bool accepting_ = true;            // the poller tells of new clients
   bool holding_ = false;             // for readers who lag
-  bool out_of_place_ = false;        // another hub is where this one should be, or none
-  std::thread thread_;               // last: it uses all of the above
+  bool is_over_ = false;  // another is to be the hub, or its files are not there any more
+  std::thread thread_;    // last: it uses all of the above
 };
 
 }  // namespace roio::local

@@ -5,10 +5,13 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <random>
 #include <system_error>
 #include <utility>
+
+#include "local/presence.hpp"
 
 namespace roio::local {
 namespace {
@@ -84,6 +87,7 @@ void HubMemory::set_up(std::uint32_t bitrate_bps) {
   std::random_device device;
   header.identity.store((std::uint64_t{device()} << 32) | device(), std::memory_order_relaxed);
   header.hubs.store(0, std::memory_order_relaxed);
+  header.host.store(0, std::memory_order_relaxed);
   header.bitrate_bps.store(bitrate_bps, std::memory_order_relaxed);
   header.head.store(0, std::memory_order_relaxed);
   header.magic.store(layout_magic, std::memory_order_release);
@@ -93,14 +97,35 @@ ClientMemory::ClientMemory(int lock_fd, std::size_t slot)
     : all_(lock_fd, 0, sizeof(Memory), false),
       own_(lock_fd, offsetof(Memory, slots) + slot * sizeof(Slot), sizeof(Slot), true) {}
 
-bool is_memory_of(int lock_fd, std::uint64_t identity) {
-  if (!has_size(lock_fd)) {
-    return false;
+MemoryView::MemoryView(const std::string& lock_path)
+    : file_(::open(lock_path.c_str(), O_RDWR | O_CLOEXEC)) {
+  look(file_.get());
+}
+
+MemoryView::MemoryView(int lock_fd) {
+  look(lock_fd);
+}
+
+void MemoryView::look(int lock_fd) {
+  if (lock_fd >= 0 && has_size(lock_fd)) {
+    mapping_ = Mapping(lock_fd, 0, sizeof(Memory), false);
+    lock_fd_ = lock_fd;
+    is_set_up_ = (*this)->header.magic.load(std::memory_order_acquire) == layout_magic;
   }
-  const Mapping mapping(lock_fd, 0, sizeof(Header), false);
-  const auto& header = *static_cast<const Header*>(mapping.at());
-  return header.magic.load(std::memory_order_acquire) == layout_magic &&
-         header.identity.load(std::memory_order_relaxed) == identity;
+}
+
+bool MemoryView::has_clients() const {
+  return is_set_up_ &&
+         std::any_of((*this)->slots.begin(), (*this)->slots.end(), [this](const Slot& slot) {
+           const std::uint64_t client = slot.client.load(std::memory_order_relaxed);
+           return client != 0 && is_present(lock_fd_, client);
+         });
+}
+
+std::uint64_t MemoryView::host() const {
+  const std::uint64_t host =
+      is_set_up_ ? (*this)->header.host.load(std::memory_order_relaxed) : std::uint64_t{0};
+  return host != 0 && is_present(lock_fd_, host) ? host : 0;
 }
 
 }  // namespace roio::local

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <roio/parts/fd.hpp>
 #include <roio/parts/lanes.hpp>
+#include <string>
 
 #include "local/protocol.hpp"
 
@@ -56,6 +57,7 @@ struct Header {
   std::atomic<std::uint64_t> magic;        ///< Says that all this is set up, and laid out as here.
   std::atomic<std::uint64_t> identity;     ///< Random: of the bus since somebody was on it.
   std::atomic<std::uint64_t> hubs;         ///< How many have carried it.
+  std::atomic<std::uint64_t> host;         ///< Client that is there to carry it; 0: none.
   std::atomic<std::uint32_t> bitrate_bps;  ///< 0: none.
   alignas(64) std::atomic<std::uint64_t> head;  ///< Number of the frame carried last; from 1.
 };
@@ -122,8 +124,30 @@ class ClientMemory {
   Mapping own_;
 };
 
-/// Whether the file is a bus's memory, set up by a hub of this version, of this identity.
-bool is_memory_of(int lock_fd, std::uint64_t identity);
+/// What can be known of a bus by its lock file alone.
+class MemoryView {
+ public:
+  /// Nothing, when there is no such file or no hub of this version has set it up.
+  explicit MemoryView(const std::string& lock_path);
+  explicit MemoryView(int lock_fd);
+
+  explicit operator bool() const { return is_set_up_; }
+  [[nodiscard]] const Memory& operator*() const { return *static_cast<Memory*>(mapping_.at()); }
+  [[nodiscard]] const Memory* operator->() const { return &**this; }
+
+  /// Whether any client is alive.
+  [[nodiscard]] bool has_clients() const;
+  /// The client that is there to carry the bus, while it is alive; 0: none.
+  [[nodiscard]] std::uint64_t host() const;
+
+ private:
+  void look(int lock_fd);
+
+  UniqueFd file_;
+  Mapping mapping_;
+  int lock_fd_ = -1;
+  bool is_set_up_ = false;
+};
 
 }  // namespace roio::local
 

@@ -195,6 +195,14 @@ bool Place::is_carried_in(const std::string& folder) const {
   return lock && is_private_folder(folder) && ::flock(lock.get(), LOCK_EX | LOCK_NB) != 0;
 }
 
+std::vector<std::string> Place::lock_paths() const {
+  std::vector<std::string> paths = folders();
+  for (std::string& path : paths) {
+    path = lock_path(path, bus_name_);
+  }
+  return paths;
+}
+
 std::optional<HubSeat> Place::claim() const {
   const std::vector<std::string> all = folders();
   for (auto other = all.begin() + 1; other != all.end(); ++other) {

@@ -71,6 +71,9 @@ class Place {
   /// @throws Errc::not_permitted: what listens there is another user's.
   [[nodiscard]] std::optional<Hub> find() const;
 
+  /// The lock file of the bus in each of the folders, there or not.
+  [[nodiscard]] std::vector<std::string> lock_paths() const;
+
   /// Gets the right to be the hub; none when another process has it.
   [[nodiscard]] std::optional<HubSeat> claim() const;
 

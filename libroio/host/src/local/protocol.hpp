@@ -50,10 +50,10 @@ struct Hello {
   static constexpr RecordType type = RecordType::hello;
   std::array<char, 4> magic;
   std::uint16_t version;
-  std::uint16_t zero;
+  std::uint16_t host;         // 1: is there to carry the bus, and means to
   std::uint64_t client;       // random, not 0, the same at every hub
   std::uint32_t bitrate_bps;  // 0: whatever the bus runs at
-  std::uint32_t zero_too;
+  std::uint32_t zero;
 };
 
 struct WireFrame {
