@@ -6,6 +6,8 @@
 // URL": carries the bus for nobody; says for all senders together what came, once its input has
 // told it how many frames there were. "local_peer pour URL SENDER": carries it for nobody; sends
 // until its input ends. "local_peer shot URL SENDER": the same with 20 frames, at once.
+#include <unistd.h>
+
 #include <array>
 #include <atomic>
 #include <cstdio>
@@ -172,6 +174,13 @@ int main(int argc, char** argv) {
     bus->close();
     say("sent=" + std::to_string(bus->statistics().sent) + " all=" + (all ? "yes" : "no") +
         " unsent=" + std::to_string(bus->statistics().unsent));
+  } else if (mode == "fork") {
+    const pid_t child = ::fork();
+    if (child == 0) {
+      ::pause();
+    }
+    say(std::to_string(child));
+    std::getchar();
   } else if (mode == "listen") {
     listen(*bus);
   } else if (mode == "pour" || mode == "shot") {

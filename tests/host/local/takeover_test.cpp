@@ -176,7 +176,7 @@ class LeftBehind : public ::testing::Test {
   }
   // As the next hub finds it.
   std::uint64_t done_after_takeover() {
-    const local::Hub next(std::move(seat_), std::nullopt);
+    const local::Hub next(std::move(seat_), std::nullopt, 0);
     return memory_->slots.at(0).done.at(normal_lane);
   }
 

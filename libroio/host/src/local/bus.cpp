@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "local/connection.hpp"
+#include "local/fork.hpp"
 #include "local/inbox.hpp"
 #include "local/outbox.hpp"
 
@@ -356,7 +357,7 @@ void LocalBus::adopt(Connection connection) {
 std::unique_ptr<Bus> open_local(const std::string& bus_name,
                                 std::optional<std::uint32_t> bitrate_bps,
                                 const OpenOptions& options) {
-  return std::make_unique<local::LocalBus>(bus_name, bitrate_bps, options);
+  return local::parents_bus(std::make_unique<local::LocalBus>(bus_name, bitrate_bps, options));
 }
 
 }  // namespace roio

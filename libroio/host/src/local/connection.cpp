@@ -60,7 +60,8 @@ std::optional<Connection> Connector::connect(const Deadline& deadline, const Eve
         return connection;
       }
     } else if (auto seat = may_claim(taken_over) ? place_.claim() : std::nullopt) {
-      hub_ = std::make_unique<Hub>(std::move(*seat), bitrate_bps_);
+      hub_ = std::make_unique<Hub>(std::move(*seat), bitrate_bps_,
+                                   carry_ == Carry::always ? client_ : 0);
       continue;
     }
     if (deadline.passed() && (taken_over.passed() || !is_between_hubs())) {

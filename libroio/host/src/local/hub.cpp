@@ -35,12 +35,15 @@ std::optional<std::uint32_t> rate(std::uint32_t bitrate_bps) {
 
 }  // namespace
 
-Hub::Hub(HubSeat seat, std::optional<std::uint32_t> bitrate_bps)
+Hub::Hub(HubSeat seat, std::optional<std::uint32_t> bitrate_bps, std::uint64_t host)
     : seat_(std::move(seat)), memory_(seat_.lock_fd()), readers_(*memory_), now_(Clock::now()) {
   if (!take_over()) {
     memory_.set_up(bitrate_bps.value_or(0));
   }
   memory_->header.hubs.fetch_add(1, std::memory_order_relaxed);
+  if (host != 0) {
+    memory_->header.host.store(host, std::memory_order_relaxed);
+  }
   medium_.emplace(rate(memory_->header.bitrate_bps.load(std::memory_order_relaxed)));
   poller_.add(stop_.fd(), &stop_);
   seat_.open();

@@ -30,8 +30,9 @@ class Hub {
   /// Goes on with the bus that the seat's memory holds, or begins a new one where nobody is left of
   /// that, and starts serving.
   /// @param bitrate_bps of a new one; none: no limit.
+  /// @param host the client of this process that is there to carry it; 0: it does so by chance.
   /// @throws std::system_error: no memory, thread or descriptor to be had.
-  Hub(HubSeat seat, std::optional<std::uint32_t> bitrate_bps);
+  Hub(HubSeat seat, std::optional<std::uint32_t> bitrate_bps, std::uint64_t host);
   Hub(const Hub&) = delete;
   Hub& operator=(const Hub&) = delete;
   /// Leaves the seat. Frames that have not been carried are still with their senders, who offer

@@ -40,6 +40,8 @@ Mapping::Mapping(int fd, std::size_t offset, std::size_t size, bool writable) {
     start_ = nullptr;
     fail("the bus's memory");
   }
+  // A child would keep the file, and with it the parent's locks.
+  static_cast<void>(::madvise(start_, length_, MADV_DONTFORK));
   at_ = static_cast<char*>(start_) + before;
 }
 

@@ -115,6 +115,7 @@ std::vector<std::string> folders() {
 
 HubSeat::HubSeat(UniqueFd lock, std::string lock_path, std::string socket_path)
     : lock_(std::move(lock)),
+      no_lock_in_children_(lock_.get()),
       lock_path_(std::move(lock_path)),
       socket_path_(std::move(socket_path)) {}
 
@@ -134,6 +135,7 @@ void HubSeat::open() {
       ::rename(fresh.c_str(), socket_path_.c_str()) != 0) {
     fail(socket_path_);
   }
+  no_listener_in_children_ = ParentsFd(listener_.get());
 }
 
 bool HubSeat::is_in_place() const {
@@ -151,8 +153,10 @@ void HubSeat::leave(bool remove_memory) noexcept {
       ::unlink(lock_path_.c_str());  // still locked: see Place::claim()
     }
   }
+  no_listener_in_children_ = ParentsFd();
   listener_.reset();
   ::flock(lock_.get(), LOCK_UN);  // the memory that is mapped from it would keep it otherwise
+  no_lock_in_children_ = ParentsFd();
   lock_.reset();
 }
 

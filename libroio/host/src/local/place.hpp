@@ -8,6 +8,8 @@
 #include <string>
 #include <vector>
 
+#include "local/fork.hpp"
+
 namespace roio::local {
 
 /// The right to be a bus's hub: held by one process at a time, given back by the kernel when it
@@ -36,6 +38,8 @@ class HubSeat {
  private:
   UniqueFd lock_;
   UniqueFd listener_;
+  ParentsFd no_lock_in_children_;
+  ParentsFd no_listener_in_children_;
   std::string lock_path_;
   std::string socket_path_;
 };

@@ -27,12 +27,14 @@ Presence::Presence(const std::string& path, std::uint64_t client) {
   struct flock lock = place_of(client);
   if (file && ::fcntl(file.get(), F_OFD_SETLK, &lock) == 0) {
     file_ = std::move(file);
+    not_in_children_ = ParentsFd(file_.get());
   }
 }
 
 Presence& Presence::operator=(Presence&& other) noexcept {
   end();
   file_ = std::move(other.file_);
+  not_in_children_ = std::move(other.not_in_children_);
   return *this;
 }
 
@@ -50,6 +52,7 @@ void Presence::end() {
     all.l_type = F_UNLCK;
     all.l_whence = SEEK_SET;
     ::fcntl(file_.get(), F_OFD_SETLK, &all);
+    not_in_children_ = ParentsFd();
     file_.reset();
   }
 }

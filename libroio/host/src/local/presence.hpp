@@ -5,6 +5,8 @@
 #include <roio/parts/fd.hpp>
 #include <string>
 
+#include "local/fork.hpp"
+
 namespace roio::local {
 
 /// That a client is alive: a lock on the bus's lock file, at a place of its own, which the kernel
@@ -33,6 +35,7 @@ class Presence {
 
  private:
   UniqueFd file_;
+  ParentsFd not_in_children_;
 };
 
 /// Whether the client shows its presence in the file.

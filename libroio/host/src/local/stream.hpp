@@ -7,6 +7,7 @@
 #include <span>
 #include <utility>
 
+#include "local/fork.hpp"
 #include "local/protocol.hpp"
 
 namespace roio::local {
@@ -14,11 +15,14 @@ namespace roio::local {
 /// A non-blocking socket with the bytes on their way in and out.
 class Stream {
  public:
-  explicit Stream(UniqueFd socket) : socket_(std::move(socket)) {}
+  explicit Stream(UniqueFd socket) : socket_(std::move(socket)), not_in_children_(socket_.get()) {}
 
   [[nodiscard]] int fd() const { return socket_.get(); }
   [[nodiscard]] bool open() const { return static_cast<bool>(socket_); }
-  void close() { socket_.reset(); }
+  void close() {
+    not_in_children_ = ParentsFd();
+    socket_.reset();
+  }
 
   enum class Read : std::uint8_t {
     some,     ///< Bytes came; there may be more.
@@ -45,6 +49,7 @@ class Stream {
   void compact();
 
   UniqueFd socket_;
+  ParentsFd not_in_children_;
   Buffer in_;  // fixed size, once used; what came and was not taken is in_start_..in_end_
   std::size_t in_start_ = 0;
   std::size_t in_end_ = 0;

@@ -1,0 +1,33 @@
+#ifndef ROIO_LOCAL_FORK_HPP
+#define ROIO_LOCAL_FORK_HPP
+
+#include <memory>
+#include <roio/bus.hpp>
+
+/// fork() copies a program's buses, but not the threads that serve them, and what both then did
+/// with the same sockets and locks would end the parent's bus. So a bus stays the parent's: in the
+/// child it is as if closed, and the child holds nothing that belongs to it.
+namespace roio::local {
+
+/// Keeps a descriptor from children that fork() without exec() makes: there it is closed at once.
+/// The parent's locks are its own then, and end with it.
+class ParentsFd {
+ public:
+  /// @param fd -1: none. Must stay open as long as this.
+  explicit ParentsFd(int fd = -1);
+  ParentsFd(ParentsFd&& other) noexcept;
+  ParentsFd& operator=(ParentsFd&& other) noexcept;
+  ParentsFd(const ParentsFd&) = delete;
+  ParentsFd& operator=(const ParentsFd&) = delete;
+  ~ParentsFd();
+
+ private:
+  int fd_;
+};
+
+/// A bus that is closed in children of this process, and forgotten there when it ends.
+std::unique_ptr<Bus> parents_bus(std::unique_ptr<Bus> bus);
+
+}  // namespace roio::local
+
+#endif
