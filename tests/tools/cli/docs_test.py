@@ -3,8 +3,8 @@
 
 A block is one bash session: "$ " begins a command, "> " goes on with it, the rest is output. Commands
 that end with "&" run until they end by themselves; what they print stands at the block's end, in their
-order. A dump in the background that `send --wait` follows is run as it stands; for others the script waits. A
-block after <!-- file NAME --> is a file that the blocks after it find. Blocks that name vcan0, themselves or in a
+order. A dump in the background that `send --wait` follows is run as it stands; for others the script waits, in
+place of "sleep". A block after <!-- file NAME --> is a file that the blocks after it find. Blocks that name vcan0, themselves or in a
 file that they name, need real SocketCAN and are run with ROIO_CLI_ON_SOCKETCAN, the others
 without. For blocks that name /dev/ttyACM0 there is a bridge on a simulated board, if there is ROIO_SIM;
 the terminal's path is longer, so with them the number of spaces does not count.
@@ -91,6 +91,7 @@ ATTACH = """attach() {
 def session(commands):
     """The commands as a script that waits for what runs in the background, first to listen, then to end."""
     script, background = [ATTACH], 0
+    commands = [command for command in commands if not command.startswith("sleep ")]
     for command, follower in zip(commands, commands[1:] + [""]):
         if " bridge attach " in command:
             background += 1
