@@ -131,5 +131,12 @@ class InformationTest(SimTest):
             self.assertLess(max(map(len, out.splitlines())), 100)
 
 
+class HelpTest(SimTest):
+    def test_fits_on_a_terminal(self):
+        status, out, err = self.run_sim("--help")
+        self.assertEqual((status, err), (0, ""))
+        self.assertLessEqual(max(map(len, out.splitlines())), 80)
+
+
 if __name__ == "__main__":
     main()
