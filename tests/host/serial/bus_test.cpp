@@ -17,7 +17,7 @@
 namespace roio::test {
 namespace {
 
-constexpr std::chrono::seconds guard{20};
+constexpr std::chrono::seconds guard{30};  // against hanging only
 
 Frame frame_of(std::uint32_t id, std::uint8_t byte = 0) {
   return {id, FrameKind::extended, 1, {byte}};
@@ -38,12 +38,17 @@ Failure failure_of(const std::string& url, const OpenOptions& options = {}) {
   }
 }
 
-bool becomes(const std::function<bool()>& it_is_so, std::chrono::milliseconds patience = 5s) {
-  for (const auto end = std::chrono::steady_clock::now() + patience;
+bool becomes(const std::function<bool()>& it_is_so) {
+  for (const auto end = std::chrono::steady_clock::now() + guard;
        std::chrono::steady_clock::now() < end && !it_is_so();) {
     std::this_thread::sleep_for(1ms);
   }
   return it_is_so();
+}
+
+// Something was said to a bridge that does not answer.
+bool was_called(PtyBridge& silent) {
+  return silent.with([](ScriptedBridge& one) { return one.unheard > 0; });
 }
 
 // --- opening -------------------------------------------------------------------------------------
@@ -140,10 +145,10 @@ TEST(SerialOpen, FailsWhenTheBridgeRefusesTheBitRate) {
 TEST(SerialOpen, WaitsForABoardThatIsJustStarting) {
   PtyBridge bridge(false);
   std::thread starter([&bridge] {
-    std::this_thread::sleep_for(400ms);
+    EXPECT_TRUE(becomes([&] { return was_called(bridge); }));
     bridge.with([](ScriptedBridge& one) { one.is_deaf = false; });
   });
-  EXPECT_NO_THROW(open("serial:" + bridge.path()));
+  EXPECT_NO_THROW(open("serial:" + bridge.path(), {.open_timeout = guard}));
   starter.join();
 }
 
@@ -160,14 +165,32 @@ class SerialAuto : public testing::Test {
     }
     ::setenv("ROIO_SERIAL_PORTS", list.c_str(), 1);
   }
-  const OpenOptions quick{.open_timeout = 500ms};
+  const OpenOptions patient{.open_timeout = guard};
+};
+
+// A terminal that nobody answers at. It goes when it was called, so that nobody waits for its
+// answer as long as for that of those who answer late.
+class SilentPort {
+ public:
+  SilentPort() = default;
+  SilentPort(const SilentPort&) = delete;
+  SilentPort& operator=(const SilentPort&) = delete;
+  ~SilentPort() { leaver_.join(); }
+  [[nodiscard]] const std::string& path() const { return bridge_.path(); }
+
+ private:
+  PtyBridge bridge_{false};
+  std::thread leaver_{[this] {
+    EXPECT_TRUE(becomes([this] { return was_called(bridge_); }));
+    bridge_.unplug();
+  }};
 };
 
 TEST_F(SerialAuto, OpensTheOneBridge) {
   PtyBridge bridge;
-  PtyBridge silent(false);
+  const SilentPort silent;
   among({silent.path(), bridge.path()});
-  const auto bus = open("serial:auto", {.open_timeout = 1s});
+  const auto bus = open("serial:auto", patient);
   EXPECT_EQ(bus->name(), "serial:auto");
   EXPECT_EQ(bridge_of(*bus)->info().port, bridge.path());
 }
@@ -176,15 +199,16 @@ TEST_F(SerialAuto, LeavesWhatItAsksAsItWas) {
   PtyBridge bridge;
   bridge.with([](ScriptedBridge& one) { one.rules = {{5, 7}}; });
   among({bridge.path()});
-  const auto found = find_bridges(1s);
+  const auto found = find_bridges(guard);
   ASSERT_EQ(found.size(), 1U);
   ASSERT_TRUE(found[0].bridge) << found[0].why_not;
   EXPECT_EQ(found[0].bridge->port, bridge.path());
   EXPECT_EQ(found[0].bridge->bitrate_bps, 500'000U);
   EXPECT_EQ(found[0].bridge->state, BridgeState::active);
   EXPECT_EQ(found[0].why_not, "");
+  const auto session = [&] { return bridge.with([](auto& one) { return one.session(); }); };
+  EXPECT_TRUE(becomes([&] { return session() == 0U; })) << "BYE was said";
   bridge.with([](ScriptedBridge& one) {
-    EXPECT_EQ(one.session(), 0U) << "BYE was said";
     EXPECT_EQ(one.count_of(serial::Down::bus), 0);
     EXPECT_EQ(one.count_of(serial::Down::speed), 0);
     ASSERT_EQ(one.rules.size(), 1U);
@@ -193,14 +217,14 @@ TEST_F(SerialAuto, LeavesWhatItAsksAsItWas) {
 }
 
 TEST_F(SerialAuto, FailsWithoutAPort) {
-  const Failure failure = failure_of("serial:auto", quick);
+  const Failure failure = failure_of("serial:auto", patient);
   EXPECT_EQ(failure.code, Errc::no_bridge);
   EXPECT_EQ(failure.what.substr(0, failure.what.rfind(": ")),
             "serial:auto: no port of a likely board");
 }
 
 TEST_F(SerialAuto, FailsAndSaysWhatItSaw) {
-  PtyBridge silent(false);
+  const SilentPort silent;
   PtyBridge old;
   PtyBridge busy;
   old.with([](ScriptedBridge& one) { one.version = 9; });
@@ -216,17 +240,26 @@ TEST_F(SerialAuto, FailsAndSaysWhatItSaw) {
   for (const auto& [path, why] : expected) {
     text += (text.back() == '(' ? "" : ", ") + path + ": " + why;
   }
-  const Failure failure = failure_of("serial:auto", quick);
+  const Failure failure = failure_of("serial:auto", patient);
   EXPECT_EQ(failure.code, Errc::no_bridge);
   EXPECT_EQ(failure.what.substr(0, text.size() + 1), text + ")");
   EXPECT_EQ(other->state(), BusState::active) << "it was not disturbed";
+}
+
+TEST_F(SerialAuto, WaitsForAnAnswerNoLongerThanItMay) {
+  PtyBridge silent(false);
+  among({silent.path()});
+  const auto start = std::chrono::steady_clock::now();
+  const Failure failure = failure_of("serial:auto", {.open_timeout = 300ms});
+  EXPECT_GE(std::chrono::steady_clock::now() - start, 300ms);
+  EXPECT_EQ(failure.code, Errc::no_bridge);
 }
 
 TEST_F(SerialAuto, FailsWithSeveralBridges) {
   PtyBridge one;
   PtyBridge other;
   among({one.path(), other.path()});
-  const Failure failure = failure_of("serial:auto", quick);
+  const Failure failure = failure_of("serial:auto", patient);
   EXPECT_EQ(failure.code, Errc::several_bridges);
   EXPECT_NE(failure.what.find(one.path() + ": a bridge"), std::string::npos) << failure.what;
   EXPECT_NE(failure.what.find(other.path() + ": a bridge"), std::string::npos) << failure.what;
@@ -237,7 +270,7 @@ TEST_F(SerialAuto, TakesPatterns) {
   const std::string link = "/tmp/roio-auto-" + std::to_string(::getpid());
   std::filesystem::create_symlink(bridge.path(), link);
   among({"/tmp/nothing-like-this-*", link.substr(0, link.size() - 1) + "?"});
-  const auto found = find_bridges(1s);
+  const auto found = find_bridges(guard);
   std::filesystem::remove(link);
   ASSERT_EQ(found.size(), 1U);
   EXPECT_EQ(found[0].path, link);
