@@ -21,7 +21,7 @@ from driver import CLI, GUARD, ON_SOCKETCAN, CliTest, main, masked
 
 WITH_BRIDGE = "ROIO_SIM" in os.environ
 if WITH_BRIDGE:
-    from bridge_test import ATTACH_TRIES, NO_ANSWER, start_bridge, without_repeats
+    from bridge_test import start_bridge, without_repeats
 
 DOCUMENTS = os.environ["ROIO_CLI_DOCUMENTS"].split(":")
 PORT = "/dev/ttyACM0"
@@ -71,20 +71,10 @@ def split(block):
     return commands, "".join(output)
 
 
-# Waits until it is attached, or has failed. What ended is reaped, so that the next is job 1 again.
+# Waits until it is attached, or has failed.
 ATTACH = """attach() {
-  for ((left = TRIES; left > 0; --left)); do
-    $1 >"$2" 2>&1 &
-    until grep -q ": attached to " "$2"; do
-      if ! kill -0 $! 2>/dev/null; then
-        wait $!
-        grep -q "$NO_ANSWER" "$2" || return
-        continue 2
-      fi
-      sleep 0.01
-    done
-    return
-  done
+  $1 >"$2" 2>&1 &
+  until grep -q ": attached to " "$2" || ! kill -0 $! 2>/dev/null; do sleep 0.01; done
 }"""
 
 
@@ -155,8 +145,7 @@ class DocumentTest(CliTest):
         commands, output = split(block)
         sim, port = start_bridge(self)
         printed = self.printed([command.replace(PORT, port) for command in commands],
-                               dict(env, ROIO_SERIAL_PORTS=port, TRIES=str(ATTACH_TRIES),
-                                    NO_ANSWER=NO_ANSWER)).replace(port, PORT)
+                               dict(env, ROIO_SERIAL_PORTS=port)).replace(port, PORT)
         sim.end()
         self.assertEqual(*(re.sub(" +", " ", without_repeats(text)) for text in (printed, output)))
 
