@@ -21,8 +21,9 @@ constexpr const char* examples =
 its folder), which is built first, or an ELF file that the compiler made of one.
 NAME is what its lines begin with and commands call it; else uno, uno2, ...
 Each board has an MCP2515: SPI, chip select on pin 10, INT on pin 2.
+Roio itself has sketches, in firmware/arduino/examples and bridge_usb.
 
-Examples (Roio has the sketches, in firmware/arduino/examples and bridge_usb):
+Examples:
   roio-sim uno=Fan/Fan.ino                      a sketch of your own
   roio-sim uno=Fan.elf                          what the compiler made of it
   roio-sim --bus local:robot arm:uno=ServoController sensors:uno=SensorBoard
