@@ -136,7 +136,7 @@ TEST(SerialBus, SaysByeAndCountsWhatItCouldNotHandOver) {
   ASSERT_EQ(bus->send(frames, guard).count, 40U);
   const auto start = std::chrono::steady_clock::now();
   bus->close();
-  EXPECT_LT(std::chrono::steady_clock::now() - start, 2s);
+  EXPECT_LT(std::chrono::steady_clock::now() - start, guard);
   EXPECT_EQ(bus->statistics().unsent, 40U);
   EXPECT_EQ(bridge.with([](ScriptedBridge& one) { return one.session(); }), 0U);
 }
@@ -148,7 +148,7 @@ TEST(SerialBus, ClosesWithoutItsBridge) {
   ASSERT_TRUE(becomes([&] { return bus->state() == BusState::absent; }));
   const auto start = std::chrono::steady_clock::now();
   bus->close();
-  EXPECT_LT(std::chrono::steady_clock::now() - start, 2s);
+  EXPECT_LT(std::chrono::steady_clock::now() - start, guard);
 }
 
 // --- the bridge ----------------------------------------------------------------------------------
@@ -168,7 +168,12 @@ TEST(SerialBridge, IsSet) {
   bridge.with([](ScriptedBridge& one) {
     EXPECT_EQ(one.bitrate_bps, 250'000U);
     EXPECT_EQ(one.mode, 2);
-    EXPECT_EQ(one.heard.back().back(), 5);
+    // Not the last of all: questions for counters come in between.
+    const auto last = std::find_if(one.heard.rbegin(), one.heard.rend(), [](const Bytes& body) {
+      return body[0] == static_cast<std::uint8_t>(serial::Down::identify);
+    });
+    ASSERT_NE(last, one.heard.rend());
+    EXPECT_EQ(last->back(), 5);
   });
 }
 
