@@ -331,9 +331,8 @@ TEST(LocalBus, AFileInTheSocketsPlaceIsReplaced) {
   EXPECT_EQ(refusal("local:odd"), "(opened)");
 }
 
-// The listener is asked by the hub before the sender is, so there is a moment in which the hub has
-// missed the filters and sees the frame; the third keeps the hub busy, so that it is met. Its
-// frames lose every arbitration: with an identifier that wins, whoever is slow waits for ever.
+// The third keeps the hub busy, so that it carries frames while the filters change. Its frames lose
+// every arbitration: with an identifier that wins, whoever is slow waits for ever.
 class FiltersOfAListener : public ::testing::TestWithParam<std::size_t> {};
 // How many frames the listener itself sends before: many fill its socket, and the filters wait.
 INSTANTIATE_TEST_SUITE_P(Sends, FiltersOfAListener, ::testing::Values(0, 1000));
@@ -342,12 +341,12 @@ TEST_P(FiltersOfAListener, HoldForFramesThatAreSentAfter) {
   const std::string url = "local:" + unique_name();
   const auto holder = open(url);
   const auto listener = open(url);
+  const auto between = open(url, {.send_only = true});
   const auto sender = open(url, {.send_only = true});
   std::atomic<bool> over{false};
   const std::jthread busy([&] {
-    const auto bus = open(url, {.send_only = true});
     while (!over) {
-      static_cast<void>(bus->send(Frame{4, FrameKind::standard, 0, {}}, 1s));
+      static_cast<void>(between->send(Frame{4, FrameKind::standard, 0, {}}, 1s));
     }
   });
   const Frame frame{2, FrameKind::standard, 0, {}};

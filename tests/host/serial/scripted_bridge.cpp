@@ -42,7 +42,11 @@ std::uint32_t ScriptedBridge::ticks(Time now) const {
 
 void ScriptedBridge::take(std::uint8_t byte, Time now) {
   const auto event = reader_.take(byte);
-  if (event == RecordReader::Event::none || is_deaf) {
+  if (event == RecordReader::Event::none) {
+    return;
+  }
+  if (is_deaf) {
+    ++unheard;
     return;
   }
   if (event == RecordReader::Event::damaged ||

@@ -71,6 +71,7 @@ class ScriptedBridge {
   std::vector<Bytes> heard;   // bodies of control records, intact ones
   int hellos = 0;
   int damaged = 0;
+  int unheard = 0;  // records that came while it was deaf
   std::uint32_t due = 0;
   std::uint32_t rate_bps = serial::base_rate_bps;
 

@@ -66,6 +66,7 @@ class ShownTest(DemoTest):
                      "0.2    -> 0.10    normal  message  [2]  00 01",
                      "arm: servo: pin 3 at 90 degrees"):
             self.assertIn(f"  {line}\n", out)
+        self.assertNotRegex(out, r"(?m)^  \$ .*build/")
         self.assertNotIn("garbled", out)
         self.assertNotIn("lost:", out)
 

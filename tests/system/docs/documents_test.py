@@ -93,6 +93,12 @@ class Words(unittest.TestCase):
             with self.subTest(document=document.name):
                 self.assertNotRegex(without_blocks(document.read_text()), r"(?i)\bhubs?\b")
 
+    def test_nor_in_the_headers_that_they_read(self):
+        for folder in ("libroio/core/include", "libroio/host/include", "firmware/arduino/src"):
+            for header in (SOURCE / folder).glob("**/*.h*"):
+                with self.subTest(header=header.name):
+                    self.assertNotRegex(header.read_text(), r"(?i)\bhubs?\b")
+
     def test_sources_name_documents_that_exist(self):
         folders = ("libroio", "firmware", "bridge_usb", "sim", "tools", "tests", "bench", "examples", "cmake", "scripts")
         for file in [*(file for folder in folders for file in SOURCE.glob(f"{folder}/**/*")),

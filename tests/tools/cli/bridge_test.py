@@ -11,7 +11,7 @@ import subprocess
 import sys
 import unittest
 
-from driver import CLI, GUARD, ON_SOCKETCAN, main
+from driver import CLI, GUARD, main
 
 sys.path.append(os.path.join(os.path.dirname(__file__), "..", "sim"))
 from sim_driver import Lines, Sim, SimTest  # noqa: E402
@@ -95,12 +95,6 @@ class Attach:
         self.process.stderr.close()
 
 
-# In the lab, a virtual machine on a busy one, the simulated board may take longer to answer than a
-# program waits for a real one.
-ATTACH_TRIES = 3 if ON_SOCKETCAN else 1
-NO_ANSWER = "no bridge answered in time"
-
-
 def start_bridge(test, bus="local:robot", board="uno"):
     """A board that is there, and the path of its terminal."""
     port = test.path("ttyACM0")
@@ -118,15 +112,7 @@ class BridgeTest(SimTest):
         os.environ["ROIO_SERIAL_PORTS"] = self.port
 
     def attach(self, *arguments, **options):
-        tries = ATTACH_TRIES
-        while True:
-            tries -= 1
-            try:
-                attach = Attach(*arguments, **options)
-                break
-            except AssertionError as error:
-                if tries == 0 or NO_ANSWER not in str(error):
-                    raise
+        attach = Attach(*arguments, **options)
         self.addCleanup(attach.end)
         return attach
 

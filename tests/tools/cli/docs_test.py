@@ -3,8 +3,8 @@
 
 A block is one bash session: "$ " begins a command, "> " goes on with it, the rest is output. Commands
 that end with "&" run until they end by themselves; what they print stands at the block's end, in their
-order. A dump in the background that `send --wait` follows is run as it stands; for others the script waits. A
-block after <!-- file NAME --> is a file that the blocks after it find. Blocks that name vcan0, themselves or in a
+order. A dump in the background that `send --wait` follows is run as it stands; for others the script waits, in
+place of "sleep". A block after <!-- file NAME --> is a file that the blocks after it find. Blocks that name vcan0, themselves or in a
 file that they name, need real SocketCAN and are run with ROIO_CLI_ON_SOCKETCAN, the others
 without. For blocks that name /dev/ttyACM0 there is a bridge on a simulated board, if there is ROIO_SIM;
 the terminal's path is longer, so with them the number of spaces does not count.
@@ -21,7 +21,7 @@ from driver import CLI, GUARD, ON_SOCKETCAN, CliTest, main, masked
 
 WITH_BRIDGE = "ROIO_SIM" in os.environ
 if WITH_BRIDGE:
-    from bridge_test import ATTACH_TRIES, NO_ANSWER, start_bridge, without_repeats
+    from bridge_test import start_bridge, without_repeats
 
 DOCUMENTS = os.environ["ROIO_CLI_DOCUMENTS"].split(":")
 PORT = "/dev/ttyACM0"
@@ -71,26 +71,17 @@ def split(block):
     return commands, "".join(output)
 
 
-# Waits until it is attached, or has failed. What ended is reaped, so that the next is job 1 again.
+# Waits until it is attached, or has failed.
 ATTACH = """attach() {
-  for ((left = TRIES; left > 0; --left)); do
-    $1 >"$2" 2>&1 &
-    until grep -q ": attached to " "$2"; do
-      if ! kill -0 $! 2>/dev/null; then
-        wait $!
-        grep -q "$NO_ANSWER" "$2" || return
-        continue 2
-      fi
-      sleep 0.01
-    done
-    return
-  done
+  $1 >"$2" 2>&1 &
+  until grep -q ": attached to " "$2" || ! kill -0 $! 2>/dev/null; do sleep 0.01; done
 }"""
 
 
 def session(commands):
     """The commands as a script that waits for what runs in the background, first to listen, then to end."""
     script, background = [ATTACH], 0
+    commands = [command for command in commands if not command.startswith("sleep ")]
     for command, follower in zip(commands, commands[1:] + [""]):
         if " bridge attach " in command:
             background += 1
@@ -154,8 +145,7 @@ class DocumentTest(CliTest):
         commands, output = split(block)
         sim, port = start_bridge(self)
         printed = self.printed([command.replace(PORT, port) for command in commands],
-                               dict(env, ROIO_SERIAL_PORTS=port, TRIES=str(ATTACH_TRIES),
-                                    NO_ANSWER=NO_ANSWER)).replace(port, PORT)
+                               dict(env, ROIO_SERIAL_PORTS=port)).replace(port, PORT)
         sim.end()
         self.assertEqual(*(re.sub(" +", " ", without_repeats(text)) for text in (printed, output)))
 

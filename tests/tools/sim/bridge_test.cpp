@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <deque>
 #include <roio/sim/can_bus.hpp>
-#include <thread>
 #include <vector>
 
 #include "exit_status.hpp"
@@ -103,13 +102,13 @@ TEST_F(BridgeTest, WhenTheOtherBusIsFullTimeIsToWait) {
   while (board_.waiting() > 0) {
     EXPECT_FALSE(bridge_.is_blocked() && bus_.now() < 20ms);
     bus_.run_for(1ms);
-    bridge_.give();
+    bridge_.give({});
   }
   EXPECT_TRUE(bridge_.is_blocked());
   EXPECT_EQ(bridge_.given(), 100U);
   EXPECT_EQ(bridge_.lost(), 303U) << "300 are still here";
   other_->room = SIZE_MAX;
-  bridge_.give();
+  bridge_.give({});
   EXPECT_FALSE(bridge_.is_blocked());
   ASSERT_EQ(other_->taken.size(), 400U);
   for (std::uint32_t i = 0; i < 400; ++i) {
@@ -127,7 +126,7 @@ TEST_F(BridgeTest, KindsPassAndALongDlcIsEightBytes) {
     board_.send(one);
   }
   bus_.run_for(10ms);
-  bridge_.give();
+  bridge_.give({});
   ASSERT_EQ(other_->taken.size(), 4U);
   for (std::size_t i = 0; i < 4; ++i) {
     EXPECT_EQ(other_->taken[i].kind, sent[i].kind);
@@ -136,25 +135,53 @@ TEST_F(BridgeTest, KindsPassAndALongDlcIsEightBytes) {
   }
 }
 
-TEST(BridgeToABusThatIsStuck, GivesUp) {
-  sim::CanBus bus;
-  auto other = std::make_unique<OtherBus>();
-  other->room = 0;
-  Bridge bridge(bus, rate, std::move(other), 20ms);
-  sim::HostNode board(bus, rate);
-  bridge.give();
-  std::this_thread::sleep_for(30ms);
-  bridge.give();  // nothing waits: nothing is stuck
-  board.send(frame(1));
-  bus.run_for(2ms);
-  bridge.give();
-  std::this_thread::sleep_for(30ms);
+class BridgeToABusThatIsStuck : public BridgeTest {
+ protected:
+  BridgeToABusThatIsStuck() { other_->room = 0; }
+  void send(std::uint32_t number) {
+    board_.send(frame(number));
+    bus_.run_for(2ms);
+  }
+  // The time goes on, in steps shorter than the pauses that count no further.
+  void give_for(Bridge::Clock::duration time) {
+    for (const auto end = now_ + time; now_ < end;) {
+      now_ += 50ms;
+      bridge_.give(now_);
+    }
+  }
+  Bridge::Clock::time_point now_{};
+};
+
+TEST_F(BridgeToABusThatIsStuck, GivesUpAfterFiveSeconds) {
+  give_for(10s);  // nothing waits: nothing is stuck
+  send(1);
+  give_for(5s);
   try {
-    bridge.give();
+    give_for(50ms);
     ADD_FAILURE() << "it goes on";
   } catch (const cli::Failure& failure) {
     EXPECT_STREQ(failure.what(), "local:other: has taken no frame for too long");
   }
+}
+
+TEST_F(BridgeToABusThatIsStuck, EveryFrameThatItTakesStartsTheTimeAnew) {
+  send(1);
+  send(2);
+  give_for(5s);
+  other_->room = 1;
+  give_for(50ms);
+  EXPECT_EQ(bridge_.given(), 1U);
+  EXPECT_NO_THROW(give_for(5s));
+  EXPECT_THROW(give_for(50ms), cli::Failure);
+}
+
+TEST_F(BridgeToABusThatIsStuck, APauseOfThisProcessIsNotTheBuss) {
+  send(1);
+  give_for(50ms);
+  now_ += 1h;  // stopped, and continued
+  EXPECT_NO_THROW(bridge_.give(now_));
+  EXPECT_NO_THROW(give_for(4900ms));
+  EXPECT_THROW(give_for(50ms), cli::Failure);
 }
 
 TEST(BridgeToNothing, AcknowledgesWhatBoardsSend) {

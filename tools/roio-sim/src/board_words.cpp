@@ -50,7 +50,7 @@ ParseError error_in(std::string_view what, std::string_view text, const std::str
 Parsed<BoardWord> parse_board_word(std::string_view text) {
   const std::size_t equals = text.find('=');
   if (equals == std::string_view::npos || equals + 1 == text.size()) {
-    return error_in("board", text, "[NAME:]BOARD=FILE, such as arm:uno=ServoController.elf");
+    return error_in("board", text, "[NAME:]BOARD=FILE, such as fan:uno=Fan/Fan.ino");
   }
   const std::string_view left = text.substr(0, equals);
   const std::size_t colon = left.find(':');

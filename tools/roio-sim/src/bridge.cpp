@@ -14,17 +14,14 @@ namespace {
 // filled up.
 constexpr std::size_t most_in_node = 32;
 constexpr std::size_t most_waiting = 256;
+constexpr Bridge::Clock::duration longest_block = std::chrono::seconds(5);
 // A process that was stopped for a while comes back to a bus that is not to blame.
 constexpr Bridge::Clock::duration longest_between = std::chrono::milliseconds(100);
 
 }  // namespace
 
-Bridge::Bridge(sim::CanBus& bus, std::uint32_t bitrate_bps, std::unique_ptr<Bus> outside,
-               Clock::duration longest_block)
-    : node_(bus, bitrate_bps),
-      outside_(std::move(outside)),
-      longest_block_(longest_block),
-      batch_(most_in_node) {
+Bridge::Bridge(sim::CanBus& bus, std::uint32_t bitrate_bps, std::unique_ptr<Bus> outside)
+    : node_(bus, bitrate_bps), outside_(std::move(outside)), batch_(most_in_node) {
   if (outside_) {
     node_.on_receive([this](const Frame& frame) {
       waiting_.push_back(frame);
@@ -57,17 +54,16 @@ void Bridge::take() {
   taken_ += transfer.count;
 }
 
-void Bridge::give() {
-  const Clock::time_point before = std::exchange(tried_, Clock::now());
+void Bridge::give(Clock::time_point now) {
+  const Clock::duration passed = now - std::exchange(tried_, now).value_or(now);
   if (!outside_ || waiting_.empty()) {
-    stuck_ = {};
     return;
   }
   const std::size_t count = outside_->send(std::span<const Frame>(waiting_), no_wait).count;
   waiting_.erase(waiting_.begin(), waiting_.begin() + static_cast<std::ptrdiff_t>(count));
   given_ += count;
-  stuck_ = count > 0 ? Clock::duration(0) : stuck_ + std::min(tried_ - before, longest_between);
-  if (stuck_ > longest_block_) {
+  stuck_ = count > 0 ? Clock::duration(0) : stuck_ + std::min(passed, longest_between);
+  if (stuck_ > longest_block) {
     throw cli::Failure(outside_->name() + ": has taken no frame for too long");
   }
 }

@@ -11,6 +11,7 @@
 #include <chrono>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <roio/bus.hpp>
 #include <roio/sim/host_node.hpp>
 #include <vector>
@@ -22,9 +23,7 @@ class Bridge {
   using Clock = std::chrono::steady_clock;
 
   /// @param outside null: none; the node still acknowledges what boards send.
-  /// @param longest_block how long the other bus may take nothing of what waits for it.
-  Bridge(sim::CanBus& bus, std::uint32_t bitrate_bps, std::unique_ptr<Bus> outside,
-         Clock::duration longest_block = std::chrono::seconds(5));
+  Bridge(sim::CanBus& bus, std::uint32_t bitrate_bps, std::unique_ptr<Bus> outside);
   Bridge(const Bridge&) = delete;
   Bridge& operator=(const Bridge&) = delete;
   ~Bridge() = default;
@@ -32,8 +31,9 @@ class Bridge {
   /// From the other bus; never waits.
   void take();
   /// To the other bus, what it takes; never waits.
-  /// @throws cli::Failure: it has taken nothing for longer than it may.
-  void give();
+  /// @param now of Clock, not before that of the call before.
+  /// @throws cli::Failure: it has taken nothing of what waits for it for longer than 5 s.
+  void give(Clock::time_point now);
 
   /// So much waits for the other bus that no more should come.
   [[nodiscard]] bool is_blocked() const;
@@ -51,11 +51,10 @@ class Bridge {
 
   sim::HostNode node_;
   std::unique_ptr<Bus> outside_;
-  Clock::duration longest_block_;
   std::vector<Received> batch_;
-  std::vector<Frame> waiting_;  // for the other bus
-  Clock::time_point tried_ = Clock::now();
-  Clock::duration stuck_{0};  // since the other bus last took something
+  std::vector<Frame> waiting_;              // for the other bus
+  std::optional<Clock::time_point> tried_;  // last
+  Clock::duration stuck_{0};                // since the other bus last took something
   std::uint64_t taken_ = 0;
   std::uint64_t given_ = 0;
 };

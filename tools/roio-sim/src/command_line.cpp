@@ -17,20 +17,21 @@ namespace {
 using cli::UsageError;
 
 constexpr const char* examples =
-    R"(BOARD is uno, nano, leonardo, micro or mega. FILE is a sketch, which is built first
-(Fan/Fan.ino or its folder), or the ELF file that the compiler made of one. NAME is
-what its lines begin with and commands call it; without one: uno, uno2, ...
+    R"(BOARD is uno, nano, leonardo, micro or mega. FILE is a sketch (Fan/Fan.ino or
+its folder), which is built first, or an ELF file that the compiler made of one.
+NAME is what its lines begin with and commands call it; else uno, uno2, ...
 Each board has an MCP2515: SPI, chip select on pin 10, INT on pin 2.
+Roio itself has sketches, in firmware/arduino/examples and bridge_usb.
 
 Examples:
   roio-sim uno=Fan/Fan.ino                      a sketch of your own
-  roio-sim uno=ServoController.elf              one board, and what it shows
-  roio-sim --bus local:robot arm:uno=ServoController.elf sensors:uno=SensorBoard.elf
-  roio-cli send local:robot 0.2 5A2D00          in another terminal: moves the servos
-  roio-sim --for 10 --speed max --json arm:uno=ServoController.elf
-  roio-sim --do 'sensors analog A0 0.5' sensors:uno=SensorBoard.elf
-  roio-sim --serial-pty usb:/tmp/ttyACM0 usb:uno=bridge_usb.elf arm:uno=ServoController.elf
-  roio-cli send serial:/tmp/ttyACM0 0.2 5A2D00  in another terminal: through the bridge
+  roio-sim uno=Fan.elf                          what the compiler made of it
+  roio-sim --bus local:robot arm:uno=ServoController sensors:uno=SensorBoard
+  roio-cli send local:robot 0.2 5A2D00          in another terminal: servos
+  roio-sim --for 10 --speed max --json uno=Fan
+  roio-sim --do 'fan analog A0 0.5' fan:uno=Fan
+  roio-sim --serial-pty usb:/tmp/ttyACM0 usb:uno=bridge_usb fan:uno=Fan
+  roio-cli send serial:/tmp/ttyACM0 0.2 01      in another terminal: bridge
 
 Commands, a line each, on standard input (and with --do):
 )";
@@ -69,13 +70,13 @@ void declare(CLI::App& app, Words& words) {
                                 const char* type, const char* description) {
     app.add_option(name, values, description)->type_name(type)->allow_extra_args(false);
   };
-  one("--bus", words.bus, "BUS", "Join the simulated bus to this one: local:NAME, or can0");
+  one("--bus", words.bus, "BUS", "Join the simulated bus to this: local:NAME, or can0");
   one("--rate", words.rate, "BPS", "Of the simulated bus, bit/s (default 500000)");
   of_boards("--crystal", words.crystals, "[NAME:]HZ", "Of the MCP2515 (default 16000000)");
   of_boards("--cs", words.chip_selects, "[NAME:]PIN", "Where chip select is (default 10)");
   of_boards("--int", words.interrupts, "[NAME:]PIN|none", "Where INT is (default 2)");
   of_boards("--serial-pty", words.terminals, "NAME[:PATH]",
-            "Its serial port becomes a terminal, at PATH (else its path is printed)");
+            "Its serial port as a terminal, at PATH or as told");
   of_boards("--do", words.commands, "COMMAND", "Do this first; may be given several times");
   one("--speed", words.speed, "X|max", "Times real time (default 1); max: as fast as it goes");
   one("--for", words.end, "SECONDS", "End after so much simulated time");

@@ -222,7 +222,7 @@ class Simulation {
         panel->look();
       }
     }
-    bridge_->give();
+    bridge_->give(Clock::now());
     cli::flush(report_->out());
     complain(pace);
     const bool is_late = runs && due > bus_.now();

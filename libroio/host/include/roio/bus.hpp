@@ -1,8 +1,11 @@
 /// Bus: one CAN bus seen from a Linux program, whatever carries it.
 ///
-///   auto bus = roio::open("can0");                       // SocketCAN
-///   auto bus = roio::open("local:robot?bitrate=500000"); // processes of one machine, no kernel
-///   CAN auto bus = roio::open("serial:/dev/ttyACM0");        // a bridge: a board with an MCP2515
+///   auto bus = roio::open("can0");                        // SocketCAN
+///   auto bus = roio::open("local:robot?bitrate=500000");  // between programs of one machine
+///   auto bus = roio::open("serial:/dev/ttyACM0");         // a bridge: a board with an MCP2515
+///
+/// A local bus is carried by one of the programs on it. When that one ends another takes over,
+/// which is an outage of milliseconds.
 ///
 /// Threads: one thread may send while another receives, and any thread may call cancel(), close(),
 /// state() and statistics(). Two threads must not receive (or send) at the same time.
@@ -31,7 +34,7 @@ using Timeout = std::chrono::nanoseconds;
 inline constexpr Timeout no_wait{0};
 inline constexpr Timeout forever = Timeout::max();
 
-/// Wall-clock time, as the kernel, the hub or the bridge stamped it.
+/// Wall-clock time, as the kernel, the program that carries a local bus, or the bridge stamped it.
 using Timestamp = std::chrono::sys_time<std::chrono::nanoseconds>;
 
 enum class Result : std::uint8_t {
@@ -50,8 +53,8 @@ struct [[nodiscard]] Transfer {
 
 struct Received {
   Frame frame;
-  Timestamp time;  ///< When the frame was on the bus, by the kernel's, the hub's or the bridge's
-                   ///< clock (that told by this computer's).
+  Timestamp time;  ///< When the frame was on the bus, by this computer's clock; a bridge's is told
+                   ///< by it.
   std::uint64_t lost_before;  ///< Frames lost to this receiver between the one before and this one.
 };
 
@@ -62,7 +65,7 @@ enum class BusState : std::uint8_t {
   passive,  ///< Error-passive: a counter above 127.
   bus_off,  ///< Bus-off: the controller takes no part until it is restarted.
   down,     ///< The interface is administratively down; the bridge has no working controller.
-  absent,   ///< The interface, the hub or the bridge is gone; it is looked for all the time.
+  absent,   ///< The interface, the bridge, or who carries the local bus is gone; it is looked for.
 };
 ROIO_EXPORT const char* to_string(BusState state) noexcept;
 
@@ -76,11 +79,12 @@ struct Statistics {
   std::uint64_t send_timeouts = 0;  ///< send() calls that gave up at their deadline.
   std::uint64_t error_frames = 0;   ///< Error reports of the controller.
   std::uint64_t bus_offs = 0;       ///< Times the controller went bus-off.
-  std::uint64_t outages = 0;        ///< Times the interface went down, the hub or the bridge away.
-  std::uint64_t resent = 0;  ///< Frames sent again to a new hub, or to a bridge that missed them.
-  std::uint64_t duplicates = 0;  ///< Frames come a second time over a new hub, not delivered again.
-  std::uint64_t unsent = 0;      ///< Frames accepted by send() and lost on close(), or with a hub
-                                 ///< or a bridge; such that a bridge gave up, or cannot tell of.
+  std::uint64_t outages = 0;        ///< Times the bus was down or absent (BusState).
+  std::uint64_t resent = 0;  ///< Frames sent again, to who took over or as a bridge missed them.
+  std::uint64_t duplicates = 0;  ///< Frames come a second time after that, not delivered again.
+  std::uint64_t unsent = 0;      ///< Frames accepted by send() and lost on close(), or with who
+                                 ///< carried the bus, or with a bridge; such that a bridge gave
+                                 ///< up, or cannot tell of.
   std::uint64_t unheard = 0;     ///< Frames carried on a local bus while nobody else received.
   std::uint64_t overruns = 0;    ///< Reports of a controller that it lost frames, how many unsaid.
   std::uint64_t fd_frames = 0;   ///< CAN FD frames that passed the filters of a CAN interface; they
@@ -103,8 +107,8 @@ struct OpenOptions {
   bool error_frames = false;
   /// Receive nothing until set_filters(): for programs that only send.
   bool send_only = false;
-  /// How long open() may wait for the bus (a hub that is just starting or leaving, a board that is
-  /// reset when its port is opened).
+  /// How long open() may wait for the bus (a local bus whose first program is just starting or
+  /// leaving, a board that is reset when its port is opened).
   Timeout open_timeout = std::chrono::seconds(5);
   /// Of a local bus. Other kinds take no notice.
   Carry carry = Carry::if_needed;
@@ -157,8 +161,8 @@ class ROIO_EXPORT Bus {
   [[nodiscard]] virtual BusState state() const = 0;
   [[nodiscard]] virtual Statistics statistics() const = 0;
 
-  /// How many others receive from this bus, as the hub of a local bus last told. None: nobody can
-  /// tell, as on every other kind of bus, or while one hub takes over from another.
+  /// How many others receive from this local bus, as the program that carries it last told. None:
+  /// nobody can tell, as on every other kind of bus, or while another program takes over.
   [[nodiscard]] virtual std::optional<std::size_t> listeners() const { return std::nullopt; }
 
   /// Makes the waits of now and later return cancelled until resume(). May be called from a signal
