@@ -36,14 +36,14 @@ TEST(ChangeMode, OnABusThatIsNeverIdleSaysSoAndStops) {
 TEST(ChangeMode, NeedsAChipThatIsRunning) {
   Rig<> rig;
   EXPECT_EQ(rig.can.change_mode(Mode::normal), Status::no_chip);
-  EXPECT_EQ(rig.can.change_mode(Mode::sleep), Status::no_chip);
+  EXPECT_EQ(rig.can.change_mode(Mode::asleep), Status::no_chip);
   rig.begin();
   EXPECT_EQ(rig.can.stop(), Status::ok);
   EXPECT_EQ(rig.can.change_mode(Mode::normal), Status::no_chip);
 }
 
 TEST(ChangeMode, BeginTakesNoModeThatRests) {
-  for (const Mode mode : {Mode::sleep, Mode::configuration}) {
+  for (const Mode mode : {Mode::asleep, Mode::configuration}) {
     Rig<> rig;
     EXPECT_EQ(rig.can.begin(plain_config(mode)), Status::bad_argument);
     EXPECT_EQ(rig.spent().first, 0U);
@@ -52,9 +52,9 @@ TEST(ChangeMode, BeginTakesNoModeThatRests) {
 
 /// Modes in which the chip is off the bus and keeps its setup.
 class Rest : public testing::TestWithParam<Mode> {};
-INSTANTIATE_TEST_SUITE_P(, Rest, testing::Values(Mode::sleep, Mode::configuration),
+INSTANTIATE_TEST_SUITE_P(, Rest, testing::Values(Mode::asleep, Mode::configuration),
                          [](const auto& row) {
-                           return row.param == Mode::sleep ? "Asleep" : "InConfigurationMode";
+                           return row.param == Mode::asleep ? "Asleep" : "InConfigurationMode";
                          });
 
 TEST_P(Rest, TheChipIsOffTheBusAndKeepsItsSetup) {
@@ -129,7 +129,7 @@ TEST(Sleep, EndsByTheBusWithTheFrameThatWakesItLost) {
   Rig<true> rig;
   rig.begin();
   sim::HostNode witness(rig.bus, 500'000);  // acknowledges
-  ASSERT_EQ(rig.can.change_mode(Mode::sleep), Status::ok);
+  ASSERT_EQ(rig.can.change_mode(Mode::asleep), Status::ok);
   rig.bus.run_for(milliseconds(100));
   EXPECT_TRUE(rig.can.is_asleep());
   EXPECT_FALSE(rig.wire.interrupt_line_is_low());
@@ -148,7 +148,7 @@ TEST(Sleep, EndsByTheBusWithTheFrameThatWakesItLost) {
 TEST(Sleep, OfTheOnlyListenerLosesNothingForTheSenderTriesAgain) {
   Rig<true> rig;
   rig.begin();
-  ASSERT_EQ(rig.can.change_mode(Mode::sleep), Status::ok);
+  ASSERT_EQ(rig.can.change_mode(Mode::asleep), Status::ok);
   rig.peer.send(numbered('A'));
   rig.bus.run_for(milliseconds(1));
   EXPECT_EQ(rig.peer.waiting(), 1U) << "nobody acknowledges";
@@ -168,7 +168,7 @@ TEST(Sleep, OnABusyBusIsShortAndOkAllTheSame) {
   }
   rig.bus.run_for(microseconds(100));
   const sim::SimTime before = rig.bus.now();
-  ASSERT_EQ(rig.can.change_mode(Mode::sleep), Status::ok);
+  ASSERT_EQ(rig.can.change_mode(Mode::asleep), Status::ok);
   EXPECT_LT(rig.bus.now() - before, milliseconds(1));
   EXPECT_FALSE(rig.can.is_asleep());
   ASSERT_EQ(rig.can.change_mode(Mode::normal), Status::ok);
@@ -181,7 +181,7 @@ TEST(Sleep, EndsHoweverSlowlyTheCrystalStarts) {
     Rig<> rig({.chip = {.crystal_start = milliseconds(10)}});
     rig.bus.run_for(milliseconds(20));
     rig.begin();
-    ASSERT_EQ(rig.can.change_mode(Mode::sleep), Status::ok);
+    ASSERT_EQ(rig.can.change_mode(Mode::asleep), Status::ok);
     if (by_the_bus) {
       rig.peer.send(numbered('A'));
       rig.bus.run_for(milliseconds(1));
@@ -197,7 +197,7 @@ TEST(Sleep, EndsHoweverSlowlyTheCrystalStarts) {
 TEST(Sleep, OfAListenerEndsInAnyMode) {
   Rig<> rig;
   rig.begin(plain_config(Mode::listen_only));
-  ASSERT_EQ(rig.can.change_mode(Mode::sleep), Status::ok);
+  ASSERT_EQ(rig.can.change_mode(Mode::asleep), Status::ok);
   EXPECT_TRUE(rig.can.is_asleep());
   ASSERT_EQ(rig.can.change_mode(Mode::listen_only), Status::ok);
   EXPECT_EQ(rig.can.send(numbered(1)), Status::wrong_mode);
@@ -209,7 +209,7 @@ TEST(Sleep, OfAListenerEndsInAnyMode) {
 TEST(Sleep, OnABusThatIsStuckEndsWithAWord) {
   Rig<> rig;
   rig.begin();
-  ASSERT_EQ(rig.can.change_mode(Mode::sleep), Status::ok);
+  ASSERT_EQ(rig.can.change_mode(Mode::asleep), Status::ok);
   rig.bus.hold_dominant(true);
   rig.bus.run_for(milliseconds(1));
   EXPECT_EQ(rig.can.change_mode(Mode::normal), Status::wrong_mode);

@@ -132,7 +132,7 @@ class ClassicNode : public ArduinoNode<ArduinoPort<SetPin, NoPin>, ArduinoOption
   ///        Before it sleeps or is configured, what is to be sent goes out, for 20 ms at most.
   /// @return as changeMode(Mode); bad_argument: another.
   Status changeMode(uint8_t mode) {
-    constexpr uint8_t step = static_cast<uint8_t>(Mode::sleep);
+    constexpr uint8_t step = static_cast<uint8_t>(Mode::asleep);
     if (mode % step != 0 || mode > static_cast<uint8_t>(Mode::configuration)) {
       return Status::bad_argument;
     }

@@ -193,7 +193,7 @@ class ArduinoNode {
   /// @return ok, also when the bus has woken it already; full: something is still to be sent:
   /// poll(),
   ///         and try again; no_chip, wrong_mode: begin() again.
-  ROIO_NODISCARD Status sleep() { return changeMode(Mode::sleep); }
+  ROIO_NODISCARD Status sleep() { return changeMode(Mode::asleep); }
   /// Whether it still sleeps: the bus may have woken it.
   bool isAsleep() { return driver_.is_asleep(); }
   /// Takes part again, be it asleep or woken by the bus: takes 1 ms and what the crystal needs to

@@ -250,17 +250,17 @@ class Mcp2515 {
   ROIO_NODISCARD Status send(const Mcp2515Frame& frame, uint8_t token = 0);
 
   /// Enters another mode. normal, listen_only and loopback: as soon as the bus is idle for 11 bits;
-  /// waits for it as begin() does. sleep and configuration: the chip leaves the bus and keeps its
+  /// waits for it as begin() does. asleep and configuration: the chip leaves the bus and keeps its
   /// setup; running() is false, and the calls above say no_chip, until change_mode() takes it up
   /// again, or begin() starts it anew. Asleep it is woken by the next frame on the bus, which is
   /// lost, and pulls its interrupt pin, or by change_mode(), which has to come in any case: woken
   /// by the bus it only listens.
-  /// @return ok; full: sleep or configuration, and a frame is still to be sent: poll(), try again;
+  /// @return ok; full: asleep or configuration, and a frame is still to be sent: poll(), try again;
   ///         no_chip; wrong_mode: not entered: begin() again.
   ROIO_NODISCARD Status change_mode(mcp2515::Mode mode);
   /// Whether the chip sleeps: one register is read. No longer, once the bus has woken it.
   bool is_asleep() {
-    return mcp2515::Control::mode_of(read_register(Register::canstat)) == mcp2515::Mode::sleep;
+    return mcp2515::Control::mode_of(read_register(Register::canstat)) == mcp2515::Mode::asleep;
   }
 
   /// Takes the chip off the bus, into configuration mode; what it held is gone as with begin().

@@ -21,7 +21,7 @@ ROIO_MCP2515_MEMBER(Status)::change_mode(mcp2515::Mode mode) {
     return Status::no_chip;
   }
   running_ = true;  // unless it has forgotten meanwhile what begin() told it
-  if (before == Mode::sleep && !end_sleep()) {
+  if (before == Mode::asleep && !end_sleep()) {
     lose_chip();
   }
   look();
@@ -34,11 +34,11 @@ ROIO_MCP2515_MEMBER(Status)::change_mode(mcp2515::Mode mode) {
   }
   const uint8_t control =
       static_cast<uint8_t>((control_ & ~Control::mode_mask) | static_cast<uint8_t>(mode));
-  if (mode == Mode::sleep) {
+  if (mode == Mode::asleep) {
     prepare_sleep();
   }
   write_register(Register::canctrl, control);
-  if (mode == Mode::sleep ? !sleeps_or_slept() : !await(mode)) {
+  if (mode == Mode::asleep ? !sleeps_or_slept() : !await(mode)) {
     stop();
     return Status::wrong_mode;
   }

@@ -113,7 +113,7 @@ struct RxControl {
 
 enum class Mode : uint8_t {
   normal = 0x00,
-  sleep = 0x20,
+  asleep = 0x20,
   loopback = 0x40,
   listen_only = 0x60,
   configuration = 0x80,
@@ -121,7 +121,7 @@ enum class Mode : uint8_t {
 
 /// Off the bus, with everything that the chip was told: until another mode.
 constexpr bool is_rest(Mode mode) {
-  return mode == Mode::sleep || mode == Mode::configuration;
+  return mode == Mode::asleep || mode == Mode::configuration;
 }
 
 /// BFPCTRL (register 4-3): RX0BF and RX1BF are driven, low while their buffer is full.
