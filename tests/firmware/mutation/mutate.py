@@ -42,6 +42,7 @@ TRANSMIT = "transmit_order_test.cpp"
 OTHER = "receive_test.cpp"
 BEGIN = "begin_test.cpp"
 LINE = "interrupt_line_test.cpp"
+MODE = "mode_test.cpp"
 GUARD = 240  # seconds; a driver without its rules may hang
 
 # name: (what the driver no longer does, text of one of its headers, what stands there instead,
@@ -229,6 +230,31 @@ MUTATIONS = {
         "    if (((read_register(Register::canstat) ^ control) & Control::mode_mask) == 0) {",
         "    if (true) {",
         BEGIN, ["Begin.OnABusThatIsNeverIdleSaysSoInTime"]),
+    "what_rested_is_asked_what_it_knows": (
+        "see whether a chip that rested still knows what it was told",
+        "  look();\n  if (!running_) {\n    control_ = 0;",
+        "  if (!running_) {\n    control_ = 0;",
+        MODE, ["Rest.WithoutPowerTheChipForgetsAndThatIsTold/InConfigurationMode"]),
+    "it_rests_when_all_is_sent": (
+        "send all before the chip rests",
+        "(pending_ != 0 || !tx_queue_.empty())",
+        "false",
+        MODE, ["Rest.ComesWhenAllIsSent/Asleep", "Rest.ComesWhenAllIsSent/InConfigurationMode"]),
+    "the_bus_may_wake_it": (
+        "let the bus wake a chip that sleeps",
+        "  modify_register(Register::caninte, Interrupt::wake_up, Interrupt::wake_up);",
+        "",
+        MODE, ["Sleep.EndsByTheBusWithTheFrameThatWakesItLost"]),
+    "a_sleep_that_is_over_was_one": (
+        "know that the bus may wake the chip before anybody looks",
+        "slept = is_asleep() || (read_register(Register::canintf) & mcp2515::Interrupt::wake_up) != 0;",
+        "slept = is_asleep();",
+        MODE, ["Sleep.OnABusyBusIsShortAndOkAllTheSame"]),
+    "what_woke_listens": (
+        "expect a chip that woke to listen only",
+        "  control_ = mcp2515::Control::with_mode(control_, mcp2515::Mode::listen_only);",
+        "",
+        MODE, ["Sleep.OnABusThatIsStuckEndsWithAWord"]),
 }
 
 
