@@ -86,7 +86,7 @@ MUTATIONS = {
         RECEIVE, ["ReceiveOrder.AnInterruptLineThatIsStuckLowIsNoFrame"]),
     "a_line_that_rises_early_tells_of_a_lost_chip": (
         "look at the interrupt line before it trusts what it read",
-        "    called = is_called();",
+        "    called = polls || port_.interrupt_line_is_low();",
         "    called = true;",
         OTHER, ["ChipLoss.AFrameReadFromAChipThatWasResetIsDiscarded"]),
     "a_line_that_is_off_throws_no_frame_away": (

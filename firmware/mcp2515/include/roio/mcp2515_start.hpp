@@ -8,9 +8,6 @@
 namespace roio {
 
 namespace mcp2515 {
-constexpr uint16_t pause_us = 200;  ///< 128 clocks (8.1) of any oscillator above 640 kHz.
-constexpr uint8_t pauses = 250;     ///< 50 ms: one frame at 5 kbit/s, and 11 bits.
-
 /// Sent from the chip to itself to time its oscillator; no five equal bits up to the CRC.
 constexpr uint32_t clock_frame_id = UINT32_C(0x0AAAAAAA);
 constexpr uint8_t clock_frame_data = 0x55;
