@@ -369,7 +369,6 @@ class Mcp2515 {
   ROIO_MCP2515_OUT_OF_LINE void note(uint8_t quick, uint8_t tries);
 
   // the interrupt line
-  __attribute__((always_inline)) bool is_called();
   void try_line();
   bool line_follows(bool low);
   void lose_line();

@@ -11,7 +11,7 @@ namespace roio {
 /// frame yet: it may be stuck, or a spike.
 /// @param looked whether READ STATUS has been read in this call.
 ROIO_MCP2515_MEMBER(bool)::find_received(bool& looked) {
-  if (quick_ == 0 && !looked && is_called()) {
+  if (quick_ == 0 && !looked && (!requests_.is_on() || port_.interrupt_line_is_low())) {
     look();
     looked = true;
   }
