@@ -71,7 +71,8 @@ TEST(BroadcastUno, SaysThatThereIsNoChipAndBeginsWhenThereIs) {
   SketchRig rig(sim::BoardKind::uno, "Broadcast");
   rig.board.set_chip_fault(sim::SpiWire::Fault::stuck_high);
   EXPECT_EQ(rig.run_for_lines(500ms),
-            (Texts{"This is 0.4", "MCP2515 not answering: check the wiring and the CS pin"}));
+            (Texts{"This is 0.4",
+                   "Cannot begin, no controller answers: check the wiring and the CS pin"}));
   rig.board.set_chip_fault(sim::SpiWire::Fault::none);
   rig.received.clear();
   rig.bus.run_for(1s);
@@ -79,6 +80,16 @@ TEST(BroadcastUno, SaysThatThereIsNoChipAndBeginsWhenThereIs) {
 }
 
 // What was not sent for want of somebody who acknowledges comes once there is one, in order.
+TEST(BroadcastUno, SaysThatTheBusIsStuck) {
+  SketchRig rig(sim::BoardKind::uno, "Broadcast");
+  rig.bus.hold_dominant(true);
+  EXPECT_EQ(
+      rig.run_for_lines(500ms),
+      (Texts{"This is 0.4",
+             "Cannot begin, controller not in the mode asked for: check the wiring and the CS "
+             "pin"}));
+}
+
 TEST(BroadcastUno, LosesNoCountWhileAlone) {
   SketchRig rig(sim::BoardKind::uno, "Broadcast");
   rig.pc.controller().set_mode(sim::Controller::Mode::off);

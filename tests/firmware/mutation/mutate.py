@@ -41,6 +41,8 @@ RECEIVE = "receive_order_test.cpp"
 TRANSMIT = "transmit_order_test.cpp"
 OTHER = "receive_test.cpp"
 BEGIN = "begin_test.cpp"
+LINE = "interrupt_line_test.cpp"
+MODE = "mode_test.cpp"
 GUARD = 240  # seconds; a driver without its rules may hang
 
 # name: (what the driver no longer does, text of one of its headers, what stands there instead,
@@ -84,9 +86,36 @@ MUTATIONS = {
         RECEIVE, ["ReceiveOrder.AnInterruptLineThatIsStuckLowIsNoFrame"]),
     "a_line_that_rises_early_tells_of_a_lost_chip": (
         "look at the interrupt line before it trusts what it read",
-        "    trusted = !Port::has_interrupt_line || port_.interrupt_line_is_low();",
-        "    trusted = true;",
+        "    called = polls || port_.interrupt_line_is_low();",
+        "    called = true;",
         OTHER, ["ChipLoss.AFrameReadFromAChipThatWasResetIsDiscarded"]),
+    "a_line_that_is_off_throws_no_frame_away": (
+        "hand out a frame of a chip that answers, whatever the interrupt line says",
+        "  if (!running_) {\n    count(counters_.discarded);",
+        "  if (!running_ || !called) {\n    count(counters_.discarded);",
+        LINE, ["InterruptLineOff.FromSomeTimeOn/NotConnected",
+               "InterruptLine.ComesOffWhileAFrameIsRead", "InterruptLine.ThatIsLooseLosesNothing"]),
+    "a_line_that_is_off_is_left_alone": (
+        "poll once it has found the interrupt line off",
+        "  requests_.set_on(false);",
+        "",
+        LINE, ["InterruptLineOff.FromSomeTimeOn/NotConnected", "InterruptLine.ThatIsLooseLosesNothing"]),
+    "a_lost_chip_is_no_line_that_is_off": (
+        "look whether it is the chip before it blames the interrupt line",
+        "    if (!called && running_) {",
+        "    if (!called) {",
+        LINE, ["InterruptLine.IsNotBlamedForALostChip"]),
+    "the_line_is_tried_at_the_beginning": (
+        "see the interrupt line follow the chip in begin()",
+        "    requests_.set_on(falls && rises);",
+        "    requests_.set_on(true);",
+        LINE, ["InterruptLineOff.FromTheBeginning/NotConnected",
+               "InterruptLineOff.FromTheBeginning/StuckLow"]),
+    "the_line_is_let_go_of": (
+        "clear the flag by which it tried the interrupt line",
+        "    const bool rises = line_follows(false);  // in any case: no flag may stay",
+        "    const bool rises = falls && line_follows(false);",
+        LINE, ["InterruptLineOff.FromTheBeginning/NotConnected"]),
     "an_idle_look_that_went_wrong_is_repeated": (
         "look again when an idle look was nonsense",
         "    if (--tries == 0) {",
@@ -104,9 +133,9 @@ MUTATIONS = {
         OTHER, ["ChipLoss.ALineStuckHighIsNotTakenForAllBuffersInUse"]),
     "nothing_is_cleared_that_was_not_read": (
         "leave the chip's receive flags alone",
-        "  return trusted;",
-        "  modify_register(Register::canintf, first ? 1 : 2, 0);\n"
-        "  return trusted;",
+        "    check_soon();\n  }\n  return true;",
+        "    check_soon();\n  }\n  modify_register(Register::canintf, first ? 1 : 2, 0);\n"
+        "  return true;",
         RECEIVE, ["ReceiveOrder.EveryInterleavingWhilePolling"]),
     "the_second_frame_goes_behind_the_first": (
         "send a second frame from the buffer behind the first",
@@ -201,6 +230,31 @@ MUTATIONS = {
         "    if (((read_register(Register::canstat) ^ control) & Control::mode_mask) == 0) {",
         "    if (true) {",
         BEGIN, ["Begin.OnABusThatIsNeverIdleSaysSoInTime"]),
+    "what_rested_is_asked_what_it_knows": (
+        "see whether a chip that rested still knows what it was told",
+        "  look();\n  if (!running_) {\n    control_ = 0;",
+        "  if (!running_) {\n    control_ = 0;",
+        MODE, ["Rest.WithoutPowerTheChipForgetsAndThatIsTold/InConfigurationMode"]),
+    "it_rests_when_all_is_sent": (
+        "send all before the chip rests",
+        "(pending_ != 0 || !tx_queue_.empty())",
+        "false",
+        MODE, ["Rest.ComesWhenAllIsSent/Asleep", "Rest.ComesWhenAllIsSent/InConfigurationMode"]),
+    "the_bus_may_wake_it": (
+        "let the bus wake a chip that sleeps",
+        "  modify_register(Register::caninte, Interrupt::wake_up, Interrupt::wake_up);",
+        "",
+        MODE, ["Sleep.EndsByTheBusWithTheFrameThatWakesItLost"]),
+    "a_sleep_that_is_over_was_one": (
+        "know that the bus may wake the chip before anybody looks",
+        "slept = is_asleep() || (read_register(Register::canintf) & mcp2515::Interrupt::wake_up) != 0;",
+        "slept = is_asleep();",
+        MODE, ["Sleep.OnABusyBusIsShortAndOkAllTheSame"]),
+    "what_woke_listens": (
+        "expect a chip that woke to listen only",
+        "  control_ = mcp2515::Control::with_mode(control_, mcp2515::Mode::listen_only);",
+        "",
+        MODE, ["Sleep.OnABusThatIsStuckEndsWithAWord"]),
 }
 
 

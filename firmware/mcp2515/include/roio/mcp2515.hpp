@@ -22,7 +22,8 @@
 /// **Cost.** For a frame with 8 bytes, in SPI bytes and transactions: received in a run or with an
 /// interrupt line 16 in 2, the first one found by polling 18 in 3; sent 15 in 2, and 17 in 3 while
 /// the chip may still have others. A frame with n bytes fewer costs n fewer. A call that finds
-/// nothing costs 2 in 1, or none with an interrupt line. No call waits for the bus.
+/// nothing costs 2 in 1, or none with an interrupt line. No call waits for the bus. An interrupt
+/// line that is found not to work is left alone until the next begin(), and polling goes on.
 ///
 /// No heap, no exceptions, no global state, no floating point. What a template argument switches
 /// off takes no flash. The Port is the only way to hardware: see PortExample below. Source: MCP2515
@@ -37,6 +38,7 @@
 #include <roio/frame.hpp>
 #include <roio/header.hpp>
 #include <roio/mcp2515_frame.hpp>
+#include <roio/mcp2515_line.hpp>
 #include <roio/mcp2515_order.hpp>
 #include <roio/mcp2515_outcomes.hpp>
 #include <roio/mcp2515_queue.hpp>
@@ -148,6 +150,8 @@ struct Mcp2515Counters {
   Count chip_losses;  ///< Times that the chip was reset, unplugged, or answered nonsense: up to two
                       ///< received frames went with it each time.
   Count discarded;    ///< Frames read and thrown away because the chip was lost meanwhile.
+  Count line_losses;  ///< Times that the interrupt line was found not connected. No frame went with
+                      ///< it, but since then, and until begin() comes again, the driver polls.
 };
 
 /// What to leave in. Derive from it, change what differs, pass it as Traits.
@@ -211,8 +215,8 @@ class Mcp2515 {
   /// as unknown). What waits in the queues stays. May be called again at any time, and must be when
   /// poll() says that the chip is lost. Takes 1 ms when all is well; at most 60 ms for a chip that
   /// does not answer, and as long again for a bus that is never idle for 11 bits. (SPI at 1 MHz.)
-  /// @return ok. bad_timing: the chip cannot run at this timing; bad_argument: configuration mode,
-  ///         or one_shot without reports_outcomes; after these two nothing was touched.
+  /// @return ok. bad_timing: the chip cannot run at this timing; bad_argument: configuration or
+  ///         sleep mode, or one_shot without reports_outcomes; after these two nothing was touched.
   ///         no_chip: no answer, or not what was written. wrong_mode: the mode was not entered (the
   ///         bus is stuck, or has no transceiver).
   ROIO_NODISCARD Status begin(const Mcp2515Config& config);
@@ -245,10 +249,19 @@ class Mcp2515 {
   /// @param frame one that may be sent: not looked at.
   ROIO_NODISCARD Status send(const Mcp2515Frame& frame, uint8_t token = 0);
 
-  /// Enters another mode (normal, listen_only or loopback), as soon as the bus is idle for 11 bits;
-  /// waits for it as begin() does.
-  /// @return ok; bad_argument: configuration mode; no_chip; wrong_mode: not entered: begin() again.
+  /// Enters another mode. normal, listen_only and loopback: as soon as the bus is idle for 11 bits;
+  /// waits for it as begin() does. asleep and configuration: the chip leaves the bus and keeps its
+  /// setup; running() is false, and the calls above say no_chip, until change_mode() takes it up
+  /// again, or begin() starts it anew. Asleep it is woken by the next frame on the bus, which is
+  /// lost, and pulls its interrupt pin, or by change_mode(), which has to come in any case: woken
+  /// by the bus it only listens.
+  /// @return ok; full: asleep or configuration, and a frame is still to be sent: poll(), try again;
+  ///         no_chip; wrong_mode: not entered: begin() again.
   ROIO_NODISCARD Status change_mode(mcp2515::Mode mode);
+  /// Whether the chip sleeps: one register is read. No longer, once the bus has woken it.
+  bool is_asleep() {
+    return mcp2515::Control::mode_of(read_register(Register::canstat)) == mcp2515::Mode::asleep;
+  }
 
   /// Takes the chip off the bus, into configuration mode; what it held is gone as with begin().
   /// @return ok; no_chip: no answer.
@@ -283,12 +296,19 @@ class Mcp2515 {
                                     uint32_t& measured_hz);
 
   bool running() const { return running_; }
+  /// Whether the interrupt line is there and, as far as is known, works; if not, the driver polls.
+  bool line_is_on() const { return requests_.is_on(); }
   /// As last seen; active for ever without Traits::diagnoses.
   Mcp2515State state() const { return state_of(error_flags_); }
   /// As it is now: one register is read.
   Mcp2515State read_state() { return state_of(read_register(Register::eflg)); }
-  /// CANSTAT, as it is now.
-  uint8_t read_status() { return read_register(Register::canstat); }
+  /// READ STATUS, as it is now. The three TXnIF are always set in a chip that is at work.
+  uint8_t read_status();
+  /// Whether the pins RX0BF and RX1BF are driven, and low while their buffer is full; not driven
+  /// after begin().
+  void show_full_buffers(bool shows) {
+    write_register(Register::bfpctrl, shows ? mcp2515::pins_show_buffers : uint8_t{0});
+  }
   const Counters& counters() const { return counters_; }
   Port& port() { return port_; }
   Traits& traits() { return traits_; }
@@ -306,7 +326,9 @@ class Mcp2515 {
                                  : Traits::back_to_back ? mcp2515::TxPlaces::six
                                                         : mcp2515::TxPlaces::two>;
   /// Bases, since most often these are empty.
-  struct Requests : mcp2515::Requests<Traits::reports_outcomes>, Order {};
+  struct Requests : mcp2515::Requests<Traits::reports_outcomes>,
+                    Order,
+                    mcp2515::Line<Port::has_interrupt_line> {};
 
   static bool is_urgent(const Mcp2515Frame& frame) {
     return (frame.bytes[0] & mcp2515::priority_bit) == 0 &&
@@ -327,6 +349,12 @@ class Mcp2515 {
   uint8_t read_quick_status();
   uint8_t exchange_setup(const Mcp2515Config& config);
 
+  // changing modes
+  bool await(mcp2515::Mode mode);
+  void prepare_sleep();
+  bool sleeps_or_slept();
+  void end_sleep();
+
   // starting
   bool reach(uint8_t control);
   bool configure(const Mcp2515Config& config);
@@ -339,6 +367,11 @@ class Mcp2515 {
   bool is_plausible(uint8_t quick);
   void look();
   ROIO_MCP2515_OUT_OF_LINE void note(uint8_t quick, uint8_t tries);
+
+  // the interrupt line
+  void try_line();
+  bool line_follows(bool low);
+  void lose_line();
 
   // receiving
   bool find_received(bool& looked);
@@ -387,6 +420,7 @@ class Mcp2515 {
   template <typename Port, uint8_t RxQueue, uint8_t TxQueue, typename Traits> \
   Type Mcp2515<Port, RxQueue, TxQueue, Traits>
 
+#include <roio/mcp2515_mode.hpp>
 #include <roio/mcp2515_receive.hpp>
 #include <roio/mcp2515_send.hpp>
 #include <roio/mcp2515_start.hpp>
