@@ -119,7 +119,7 @@ TEST(SerialOpen, FailsWithAnotherVersionAndSaysWhatToDo) {
   EXPECT_EQ(failure.code, Errc::version_mismatch);
   EXPECT_EQ(failure.what.substr(0, failure.what.rfind(": ")),
             "serial:" + bridge.path() +
-                ": a bridge of protocol version 2 (firmware 0.1.0), and this is version 1; "
+                ": a bridge of protocol version 1 (firmware 0.1.0), and this is version 2; "
                 "`scripts/flash` puts the matching firmware on the board");
 }
 

@@ -206,6 +206,8 @@ constexpr std::uint32_t all(Outcome outcome) {
   return static_cast<std::uint32_t>(outcome) * 0x55555555U;
 }
 
+constexpr Time never = Time::max();
+
 std::size_t send_all(DownFrames& down) {
   std::size_t count = 0;
   while (down.next()) {
@@ -216,7 +218,7 @@ std::size_t send_all(DownFrames& down) {
 
 TEST(SerialWindow, ASlotTellsNothingOfAFrameThatIsNotTaken) {
   DownFrames down;
-  ASSERT_EQ(down.offer(numbers(0, 40)), 40U);
+  ASSERT_EQ(down.offer(numbers(0, 40), never), 40U);
   ASSERT_EQ(send_all(down), 11U);
   ASSERT_EQ(down.results(11, all(Outcome::sent)), DownFrames::Progress::some);
   // 16..21 have the slots of 0..5 from now on, but in the bridge not yet.
@@ -231,7 +233,7 @@ TEST(SerialWindow, ASlotTellsNothingOfAFrameThatIsNotTaken) {
 TEST(SerialWindow, WhatLiesOutsideOfItIsNonsense) {
   DownFrames down;
   EXPECT_EQ(down.results(1, 0), DownFrames::Progress::nonsense);
-  ASSERT_EQ(down.offer(numbers(0, 5)), 5U);
+  ASSERT_EQ(down.offer(numbers(0, 5), never), 5U);
   ASSERT_EQ(send_all(down), 5U);
   EXPECT_EQ(down.results(6, all(Outcome::sent)), DownFrames::Progress::nonsense);
   EXPECT_EQ(down.results(255, all(Outcome::sent)), DownFrames::Progress::nonsense);
@@ -245,7 +247,7 @@ TEST(SerialWindow, WhatLiesOutsideOfItIsNonsense) {
 
 TEST(SerialWindow, GoingBackSendsTheSameNumbersAgain) {
   DownFrames down;
-  ASSERT_EQ(down.offer(numbers(0, 4)), 4U);
+  ASSERT_EQ(down.offer(numbers(0, 4), never), 4U);
   ASSERT_EQ(send_all(down), 4U);
   ASSERT_EQ(down.results(1, all(Outcome::pending)), DownFrames::Progress::some);
   down.go_back();
@@ -264,7 +266,7 @@ TEST(SerialWindow, GoingBackSendsTheSameNumbersAgain) {
 
 TEST(SerialWindow, WhatIsDroppedIsCounted) {
   DownFrames down;
-  ASSERT_EQ(down.offer(numbers(0, 64)), 64U);
+  ASSERT_EQ(down.offer(numbers(0, 64), never), 64U);
   const std::size_t sent = send_all(down);
   down.drop_waiting();
   down.begin();

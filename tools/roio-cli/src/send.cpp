@@ -3,6 +3,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <roio/bridge.hpp>
 #include <roio/error.hpp>
 #include <roio/text.hpp>
 #include <span>
@@ -13,6 +14,7 @@
 #include "interrupt.hpp"
 #include "output.hpp"
 #include "record_format.hpp"
+#include "send_outcome.hpp"
 
 namespace roio::cli {
 namespace {
@@ -35,6 +37,7 @@ constexpr std::uint64_t max_named_lines = 10;
 std::unique_ptr<Bus> open_bus(const SendOptions& options) {
   OpenOptions open_options;
   open_options.send_only = true;
+  open_options.lifetime = options.timeout;
   if (!options.wait) {
     return open_until_signal(options.bus, open_options);
   }
@@ -97,10 +100,9 @@ class Sender {
         return false;
       }
       // The timeout is each frame's: as long as some go out, the others may wait on.
-      if (transfer.result != Result::ok && transfer.count == 0) {
-        throw Failure(bus_.name() + ": not sent within " +
-                      std::to_string(options_.timeout.count()) + " ms, the bus is " +
-                      to_string(bus_.state()) + "; " + count_of(sent_, "message") + " sent before");
+      const bool waited_in_vain = transfer.result != Result::ok && transfer.count == 0;
+      if (waited_in_vain || has_given_up(bus_)) {
+        throw Failure(why_not_sent(bus_, options_.timeout, sent_));
       }
     }
     return true;
@@ -216,7 +218,11 @@ void wait_for_those_who_come_over(const Bus& bus) {
 }
 
 // What send() accepted and close() could not hand over.
-void close(Bus& bus) {
+void close(const SendOptions& options, Bus& bus, std::uint64_t sent) {
+  wait_for_outcomes(bus);
+  if (has_given_up(bus)) {
+    throw Failure(why_not_sent(bus, options.timeout, sent));
+  }
   wait_for_those_who_come_over(bus);
   bus.close();
   if (const std::uint64_t unheard = bus.statistics().unheard; unheard > 0) {
@@ -264,7 +270,7 @@ int send(const SendOptions& options) {
   } else {
     unsent = send_lines(sender, options.source);
   }
-  close(*bus);
+  close(options, *bus, sender.sent());
   return finish(options, sender, unsent);
 }
 

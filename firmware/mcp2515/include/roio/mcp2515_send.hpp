@@ -99,9 +99,22 @@ ROIO_MCP2515_MEMBER(void)::settle(uint8_t quick) {
     end(ended, TxOutcome::sent);
   }
   if (requests_.aborting() && pending_ == 0) {
-    modify_register(Register::canctrl, mcp2515::Control::abort_all, 0);
-    requests_.set_aborting(false);
+    finish_abort();
   }
+}
+
+/// The chip has let go of all. What is to be sent all the same is still in its buffers.
+ROIO_MCP2515_MEMBER(void)::finish_abort() {
+  modify_register(Register::canctrl, mcp2515::Control::abort_all, 0);
+  requests_.set_aborting(false);
+  const uint8_t again = requests_.take_again();
+  for (uint8_t buffer = mcp2515::urgent_buffer; again != 0 && buffer != 0; buffer >>= 1) {
+    if ((again & QuickStatus::txreq(buffer)) != 0) {
+      Transaction transaction(port_);
+      transaction.exchange(mcp2515::request_to_send(buffer));
+    }
+  }
+  pending_ = again;
 }
 
 /// Reports what became of these requests: bits TXREQ as in READ STATUS.
@@ -116,9 +129,15 @@ ROIO_MCP2515_MEMBER(void)::end(uint8_t requests, TxOutcome outcome) {
   }
   uint8_t request = QuickStatus::txreq(mcp2515::urgent_buffer);
   for (uint8_t buffer = mcp2515::urgent_buffer; buffer != 0; buffer >>= 1, request >>= 2) {
-    if ((requests & request) != 0) {
-      report(requests_.token_of(buffer),
-             outcome == TxOutcome::unknown ? outcome : outcome_of(buffer));
+    if ((requests & request) == 0) {
+      continue;
+    }
+    const uint8_t token = requests_.token_of(buffer);
+    const TxOutcome what = outcome == TxOutcome::unknown ? outcome : outcome_of(buffer);
+    if (what == TxOutcome::aborted && !traits_.is_over(token)) {
+      requests_.add_again(request);
+    } else {
+      report(token, what);
     }
   }
 }
@@ -155,15 +174,29 @@ template <typename Port, uint8_t RxQueue, uint8_t TxQueue, typename Traits>
 template <typename T>
 void Mcp2515<Port, RxQueue, TxQueue, Traits>::abort() {
   static_assert(T::reports_outcomes, "abort() needs Traits::reports_outcomes");
-  while (!tx_queue_.empty()) {
-    const uint8_t token = tx_queue_.front().kept();
+  for (uint8_t left = tx_queue_.size(); left != 0; --left) {
+    const Waiting one = tx_queue_.front();
     tx_queue_.pop();
-    report(token, TxOutcome::aborted);
+    if (traits_.is_over(one.kept())) {
+      report(one.kept(), TxOutcome::aborted);
+    } else {
+      tx_queue_.next() = one;
+      tx_queue_.commit();
+    }
   }
-  if (running_ && pending_ != 0) {
+  if (running_ && has_over_in_chip()) {
     requests_.set_aborting(true);
     modify_register(Register::canctrl, mcp2515::Control::abort_all, mcp2515::Control::abort_all);
   }
+}
+
+ROIO_MCP2515_MEMBER(bool)::has_over_in_chip() {
+  for (uint8_t buffer = mcp2515::urgent_buffer; buffer != 0; buffer >>= 1) {
+    if (mcp2515::is_pending(pending_, buffer) && traits_.is_over(requests_.token_of(buffer))) {
+      return true;
+    }
+  }
+  return false;
 }
 
 }  // namespace roio

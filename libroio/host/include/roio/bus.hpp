@@ -93,6 +93,11 @@ struct OpenOptions {
   /// How long open() may wait for the bus (a hub that is just starting or leaving, a board that is
   /// reset when its port is opened).
   Timeout open_timeout = std::chrono::seconds(5);
+  /// A bridge: how long a frame that send() has accepted may be on its way. It is on the bus by
+  /// then (less a ninth at most), or never, whatever becomes of this program, the line and the bus
+  /// meanwhile, and counted as Statistics::unsent. Less than some milliseconds is less than the
+  /// line takes. A bridge gives up after 31 s at the latest, unless this is forever.
+  Timeout lifetime = std::chrono::seconds(1);
   /// A local bus: be there only while another program carries it, and never carry it for others.
   /// open() waits for such a program, and throws Errc::not_connected when none comes in time; the
   /// bus is absent while there is none. For programs that come and go. Others take no notice.
