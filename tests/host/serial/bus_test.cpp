@@ -114,7 +114,7 @@ TEST(SerialOpen, FailsWhenNobodyAnswersInTime) {
 
 TEST(SerialOpen, FailsWithAnotherVersionAndSaysWhatToDo) {
   PtyBridge bridge;
-  bridge.with([](ScriptedBridge& one) { one.version = 2; });
+  bridge.with([](ScriptedBridge& one) { one.version = 1; });
   const Failure failure = failure_of("serial:" + bridge.path());
   EXPECT_EQ(failure.code, Errc::version_mismatch);
   EXPECT_EQ(failure.what.substr(0, failure.what.rfind(": ")),
