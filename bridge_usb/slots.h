@@ -9,27 +9,32 @@
 namespace roio {
 namespace bridge {
 
+/// Until when each slot's frame may wait, and the bridge's own; in Clock::coarse().
+struct Lives {
+  uint16_t ends[serial::window + 1];
+  uint16_t now;
+  uint16_t units;  ///< That a frame with `life` may wait, less the time to the next look.
+  uint8_t life;
+  uint8_t looked_at;
+  bool all_over;
+};
+// Outside the class: the driver holds that in front of its own members, and an AVR reaches 64 bytes
+// from a pointer.
+static Lives lives;
+
 class Slots {
  public:
   static constexpr uint8_t no_token = 0xFF;      ///< Of a frame that has no slot: the bridge's own.
   static constexpr uint8_t default_life = 0x6F;  ///< 0.98 s: of such, and of SLCAN's.
 
-  Slots()
-      : bytes_(),
-        until_(),
-        soonest_(no_end),
-        now_(0),
-        generation_(0),
-        pending_(0),
-        news_(0),
-        all_over_(false) {}
+  Slots() : bytes_(), generation_(0), pending_(0), news_(0) {}
 
   void begin_session() {
     for (uint8_t& byte : bytes_) {
       byte = 0;
     }
     for (uint8_t slot = 0; slot < serial::window; ++slot) {
-      until_[slot] = no_end;
+      lives.ends[slot] = no_end;
     }
     generation_ = static_cast<uint8_t>((generation_ + 1U) % generations);
     pending_ = 0;
@@ -39,39 +44,49 @@ class Slots {
     return static_cast<uint8_t>((generation_ << 4) | (sequence & 0x0FU));
   }
   /// @param life as a frame's record has it.
-  void begin(uint8_t token, uint8_t life) {
+  ROIO_BRIDGE_FAST void begin(uint8_t token, uint8_t life) {
     put(token, serial::Outcome::pending);
-    set_end(token & 0x0FU, life);
+    lives.ends[token & 0x0FU] = end_of(life);
     ++pending_;
   }
   /// A frame of the bridge's own: with the last of them, all are over.
-  void begin_own() { set_end(own, default_life); }
-  void end(uint8_t token, serial::Outcome outcome) {
+  static void begin_own() { lives.ends[own] = end_of(default_life); }
+  ROIO_BRIDGE_FAST void end(uint8_t token, serial::Outcome outcome) {
     if ((token >> 4) != generation_) {
       return;
     }
     put(token, outcome);
-    until_[token & 0x0FU] = no_end;
+    lives.ends[token & 0x0FU] = no_end;
     --pending_;
     add_news();
   }
   /// Of a frame that has an end: whether it still waits.
-  bool is_pending(uint8_t token) const { return until_[token & 0x0FU] != no_end; }
+  static bool is_pending(uint8_t token) { return lives.ends[token & 0x0FU] != no_end; }
 
   /// @param now Clock::coarse().
   /// @return whether frames are over that the driver may have.
-  bool pass_time(uint16_t now) {
-    now_ = now;
-    return soonest_ != no_end && is_past(soonest_) && look_for_expired();
+  static bool pass_time(uint16_t now) {
+    lives.now = now;
+    if (static_cast<uint8_t>(static_cast<uint8_t>(now) - lives.looked_at) < look_interval) {
+      return false;
+    }
+    lives.looked_at = static_cast<uint8_t>(now);
+    bool any = false;
+    for (const uint16_t end : lives.ends) {
+      any = any || is_past(end);
+    }
+    if (is_past(lives.ends[own])) {
+      lives.ends[own] = no_end;
+    }
+    return any;
   }
   /// All that wait are over, or as they were.
-  void set_all_over(bool over) { all_over_ = over; }
+  static void set_all_over(bool over) { lives.all_over = over; }
   bool is_over(uint8_t token) const {
     if (token == no_token) {
-      return all_over_ || until_[own] == no_end || is_past(until_[own]);
+      return lives.all_over || lives.ends[own] == no_end || is_past(lives.ends[own]);
     }
-    const uint16_t until = until_[token & 0x0FU];
-    return all_over_ || (token >> 4) != generation_ || (until != no_end && is_past(until));
+    return lives.all_over || (token >> 4) != generation_ || is_past(lives.ends[token & 0x0FU]);
   }
 
   /// What the PC does not know yet: a frame was taken, or came to its end.
@@ -92,45 +107,26 @@ class Slots {
   static constexpr uint8_t generations = 15;  // with a 16th, no_token would be a token
   static constexpr uint8_t own = serial::window;
   static constexpr uint16_t no_end = 0;  // of a frame that may wait for ever; or there is none
-  static constexpr uint8_t again_after = 8;
+  static constexpr uint8_t look_interval = 8;
 
-  static constexpr uint16_t not_no_end(uint16_t time) {
-    return time == no_end ? static_cast<uint16_t>(no_end - 1U) : time;
+  static bool is_past(uint16_t end) {
+    return end != no_end && static_cast<uint16_t>(lives.now - end) < 0x8000U;
   }
-  bool is_past(uint16_t time) const { return static_cast<uint16_t>(now_ - time) < 0x8000U; }
-  void note_end(uint16_t until) {
-    if (soonest_ == no_end || static_cast<uint16_t>(until - soonest_) >= 0x8000U) {
-      soonest_ = until;
+  /// Early enough for the next look to be in time.
+  ROIO_BRIDGE_FAST static uint16_t end_of(uint8_t life) {
+    if (life !=
+        lives.life) {  // most often it is that of the frame before, and an AVR shifts bit by bit
+      lives.life = life;
+      const uint8_t known = life < serial::longest_life ? life : serial::longest_life;
+      const uint16_t units = serial::life_units(known);
+      lives.units =
+          units < look_interval ? uint16_t{0} : static_cast<uint16_t>(units - look_interval);
     }
-  }
-  void set_end(uint8_t place, uint8_t life) {
-    uint16_t until = no_end;
-    if (life != serial::life_forever) {
-      life = life < serial::longest_life ? life : serial::longest_life;
-      until = not_no_end(static_cast<uint16_t>(now_ + serial::life_units(life)));
-      note_end(until);
-    }
-    until_[place] = until;
-  }
-  bool look_for_expired() {
-    bool any = false;
-    soonest_ = no_end;
-    for (uint16_t until : until_) {
-      if (until != no_end && is_past(until)) {
-        any = true;
-        until = not_no_end(static_cast<uint16_t>(now_ + again_after));  // unless it ends before
-      }
-      if (until != no_end) {
-        note_end(until);
-      }
-    }
-    if (is_past(until_[own])) {
-      until_[own] = no_end;
-    }
-    return any;
+    return life == serial::life_forever ? no_end
+                                        : static_cast<uint16_t>((lives.now + lives.units) | 1U);
   }
 
-  void put(uint8_t token, serial::Outcome outcome) {
+  ROIO_BRIDGE_FAST void put(uint8_t token, serial::Outcome outcome) {
     static const uint8_t ones[4] = {0x01, 0x04, 0x10, 0x40};  // an AVR shifts bit by bit
     uint8_t& byte = bytes_[(token >> 2) & 3U];
     const uint8_t one = ones[token & 3U];
@@ -138,13 +134,9 @@ class Slots {
   }
 
   uint8_t bytes_[4];
-  uint16_t until_[serial::window + 1];  // Clock::coarse(): of each slot, and of the bridge's own
-  uint16_t soonest_;                    // of those, or before it
-  uint16_t now_;
   uint8_t generation_;
   uint8_t pending_;
   uint8_t news_;
-  bool all_over_;
 };
 
 }  // namespace bridge

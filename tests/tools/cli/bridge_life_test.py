@@ -59,6 +59,7 @@ class NothingOldTest(BridgeTest):
     def test_attached_frames_are_told_as_lost_and_do_not_come_later(self):
         attach = self.attach(self.port, "local:other")
         self.send("--count", "30", "local:other", "0.2", "01")
+        attach.wait_for(f"{self.port}: bus is error-passive")
         time.sleep(2 * SLOWER)
         self.assertEqual(
             attach.result(),

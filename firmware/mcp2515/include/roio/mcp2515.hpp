@@ -357,7 +357,9 @@ class Mcp2515 {
   bool load(const Mcp2515Frame& frame, uint8_t token);
   Order& order() { return requests_; }
   void settle(uint8_t quick);
-  void finish_abort();
+  ROIO_MCP2515_OUT_OF_LINE void finish_abort();
+  bool may_end_otherwise() const;
+  ROIO_MCP2515_OUT_OF_LINE void end_somehow(uint8_t buffer);
   TxOutcome outcome_of(uint8_t buffer);
   void end(uint8_t requests, TxOutcome outcome);
   void report(uint8_t token, TxOutcome outcome);

@@ -132,23 +132,34 @@ ROIO_MCP2515_MEMBER(void)::end(uint8_t requests, TxOutcome outcome) {
     if ((requests & request) == 0) {
       continue;
     }
-    const uint8_t token = requests_.token_of(buffer);
-    const TxOutcome what = outcome == TxOutcome::unknown ? outcome : outcome_of(buffer);
-    if (what == TxOutcome::aborted && !traits_.is_over(token)) {
-      requests_.add_again(request);
+    if (outcome == TxOutcome::unknown || !may_end_otherwise()) {
+      report(requests_.token_of(buffer), outcome);
     } else {
-      report(token, what);
+      end_somehow(buffer);
     }
   }
 }
 
 /// A request ends by success, unless somebody has asked for less.
+ROIO_MCP2515_MEMBER(bool)::may_end_otherwise() const {
+  return requests_.aborting() || (control_ & mcp2515::Control::one_shot) != 0;
+}
+
+/// What the chip says of it. A frame that was taken back with others, and is not over, ends later:
+/// finish_abort() sends it again.
+ROIO_MCP2515_MEMBER(void)::end_somehow(uint8_t buffer) {
+  const uint8_t token = requests_.token_of(buffer);
+  const TxOutcome outcome = outcome_of(buffer);
+  if (outcome == TxOutcome::aborted && !traits_.is_over(token)) {
+    requests_.add_again(QuickStatus::txreq(buffer));
+  } else {
+    report(token, outcome);
+  }
+}
+
 ROIO_MCP2515_MEMBER(TxOutcome)::outcome_of(uint8_t buffer) {
   using mcp2515::TxControl;
   const bool one_shot = (control_ & mcp2515::Control::one_shot) != 0;
-  if (!requests_.aborting() && !one_shot) {
-    return TxOutcome::sent;
-  }
   const uint8_t control = read_register(mcp2515::txbctrl(buffer));
   if ((control & TxControl::fixed) != order().level_of(buffer)) {
     return TxOutcome::unknown;  // that is no answer of a chip that has ended this request
