@@ -547,7 +547,7 @@ TEST(Abort, WhatIsToBeSentAgainIsUnknownWhenTheChipIsLostMeanwhile) {
   ASSERT_EQ(rig.can.poll(), Status::ok);  // 1 is back, 0 not yet
   ASSERT_EQ(rig.can.begin(plain_config()), Status::ok);
   EXPECT_EQ(rig.can.traits().outcomes,
-            (std::vector<Outcome>{{1, TxOutcome::unknown}, {0, TxOutcome::unknown}}));
+            (std::vector<Outcome>{{0, TxOutcome::unknown}, {1, TxOutcome::unknown}}));
 }
 
 }  // namespace
