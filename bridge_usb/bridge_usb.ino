@@ -7,7 +7,7 @@
 
   Parts
     line_uart.h, line_usb.h   bytes to and from the PC
-    can_side.h                the MCP2515
+    can_side.h, slots.h       the MCP2515; what becomes of each frame for the bus, and until when
     session.h                 Roio's protocol: how a session begins, goes on and ends
       session_down.h            what the PC sends: frames for the bus, and requests
       session_up.h              what it gets: frames from the bus, answers and reports

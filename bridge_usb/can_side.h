@@ -1,5 +1,5 @@
 /// CanSide: the bridge's MCP2515: finds its crystal and its INT line out, keeps it running, and
-/// keeps the outcomes of frames.
+/// takes back frames whose time is over.
 ///
 /// The chip lets everything through, and the filter is looked at here: to change the chip's own, it
 /// has to leave the bus for a millisecond, and what comes then is lost without a trace.
@@ -8,6 +8,7 @@
 
 #include "clock.h"
 #include "config.h"
+#include "slots.h"
 
 namespace roio {
 namespace bridge {
@@ -51,68 +52,6 @@ class Port : public ArduinoPort<FixedPin<ROIO_BRIDGE_CS_PIN>, FixedPin<ROIO_BRID
   bool is_wired_;
 };
 
-/// What became of the last 16 frames of the session, two bits each, as RESULTS has it. The driver's
-/// token of a frame is its slot, and which session's it is: those of a former one may still come to
-/// an end.
-class Slots {
- public:
-  static constexpr uint8_t no_token = 0xFF;  ///< Of a frame that has no slot.
-
-  Slots() : bytes_(), generation_(0), pending_(0), news_(0) {}
-
-  void begin_session() {
-    for (uint8_t& byte : bytes_) {
-      byte = 0;
-    }
-    generation_ = static_cast<uint8_t>((generation_ + 1U) % generations);
-    pending_ = 0;
-    news_ = 0;
-  }
-  uint8_t token_of(uint8_t sequence) const {
-    return static_cast<uint8_t>((generation_ << 4) | (sequence & 0x0FU));
-  }
-  void begin(uint8_t token) {
-    put(token, serial::Outcome::pending);
-    ++pending_;
-  }
-  void end(uint8_t token, serial::Outcome outcome) {
-    if ((token >> 4) != generation_) {
-      return;
-    }
-    put(token, outcome);
-    --pending_;
-    add_news();
-  }
-  /// What the PC does not know yet: a frame was taken, or came to its end.
-  void add_news() { ++news_; }
-  void take_news() { news_ = 0; }
-  bool has_news() const { return news_ != 0; }
-  /// Several are told at once, the more so while the bus is busy with others' frames; a frame that
-  /// is alone is told at once.
-  bool is_news_due(bool is_busy) const {
-    return news_ != 0 && (news_ >= (is_busy ? busy_news : enough_news) || pending_ == 0);
-  }
-  /// Slots 4n+3..4n.
-  uint8_t byte(uint8_t n) const { return bytes_[n]; }
-
- private:
-  static constexpr uint8_t enough_news = 6;
-  static constexpr uint8_t busy_news = 12;
-  static constexpr uint8_t generations = 15;  // with a 16th, no_token would be a token
-
-  void put(uint8_t token, serial::Outcome outcome) {
-    static const uint8_t ones[4] = {0x01, 0x04, 0x10, 0x40};  // an AVR shifts bit by bit
-    uint8_t& byte = bytes_[(token >> 2) & 3U];
-    const uint8_t one = ones[token & 3U];
-    byte = static_cast<uint8_t>((byte & ~(one * 3U)) | (one * static_cast<uint8_t>(outcome)));
-  }
-
-  uint8_t bytes_[4];
-  uint8_t generation_;
-  uint8_t pending_;
-  uint8_t news_;
-};
-
 class CanSide {
   struct Traits : Mcp2515Traits {
     using Count = uint32_t;
@@ -124,6 +63,7 @@ class CanSide {
                        : outcome == TxOutcome::unknown ? serial::Outcome::unknown
                                                        : serial::Outcome::not_sent);
     }
+    bool is_over(uint8_t token) const { return slots.is_over(token); }
     Slots slots;
   };
   /// All of a window may be urgent, and the chip has one of those.
@@ -135,6 +75,7 @@ class CanSide {
         clock_(clock),
         osc_hz_(0),
         bitrate_bps_(default_bitrate_bps),
+        sample_point_permille_(default_sample_point_permille(default_bitrate_bps)),
         mode_(serial::Mode::normal),
         start_status_(Status::no_chip),
         tried_at_(0),
@@ -147,28 +88,51 @@ class CanSide {
     start();
   }
 
-  /// Starts the controller anew with these. What it had to send is unknown from then on.
+  /// Whether the crystal, as far as it is known, can make this bit rate.
+  bool can_make(uint32_t bitrate_bps) const {
+    return osc_hz_ == 0 || is_valid(timing_of(osc_hz_, bitrate_bps, 0));
+  }
+  /// Starts the controller anew with these. What was to be sent is not sent, but for what the chip
+  /// had already: that is unknown from then on.
   /// @return as Mcp2515::begin(); with bad_argument and bad_timing nothing has changed.
-  Status configure(uint32_t bitrate_bps, serial::Mode mode) {
+  Status configure(uint32_t bitrate_bps, uint16_t sample_point_permille, serial::Mode mode) {
     if (static_cast<uint8_t>(mode) > static_cast<uint8_t>(serial::Mode::loopback)) {
       return Status::bad_argument;
     }
-    if (osc_hz_ != 0 && !is_valid(compute_bit_timing(osc_hz_, bitrate_bps))) {
+    if (!can_make(bitrate_bps)) {
       return Status::bad_timing;
     }
+    slots().set_all_over(true);
+    driver_.abort();
     bitrate_bps_ = bitrate_bps;
+    sample_point_permille_ = sample_point_permille;
     is_fast_ = bitrate_bps > 500000;
     mode_ = mode;
-    return start();
+    const Status status = start();
+    slots().set_all_over(false);
+    return status;
+  }
+  Status configure(uint32_t bitrate_bps, serial::Mode mode) {
+    return configure(bitrate_bps, default_sample_point_permille(bitrate_bps), mode);
+  }
+  /// Whose frames were to be sent is gone: they are taken back, and nobody asks for their outcomes.
+  void begin_session() {
+    slots().begin_session();
+    driver_.abort();
   }
   /// Off the bus, until configure().
   void stop() {
+    begin_session();
     driver_.stop();
     is_stopped_ = true;
   }
 
-  /// Takes up again a controller that was lost, or not there: a try takes up to 180 ms.
+  /// To be called every millisecond. Takes back frames that have waited for as long as they may,
+  /// and takes up again a controller that was lost, or not there: a try takes up to 180 ms.
   void tend() {
+    if (slots().pass_time(clock_.coarse())) {
+      driver_.abort();
+    }
     constexpr uint16_t retry = Clock::coarse_of_ms(250);
     if (!driver_.running() && !is_stopped_ &&
         static_cast<uint16_t>(clock_.coarse() - tried_at_) >= retry) {
@@ -198,6 +162,11 @@ class CanSide {
   bool is_quiet() { return driver_.port().is_wired() && !driver_.port().interrupt_line_is_low(); }
   /// @param token comes back to slots() with the frame's outcome.
   Status send(const Frame& frame, uint8_t token) { return driver_.send(frame, token); }
+  /// A frame of the bridge's own.
+  Status send_own(const Frame& frame) {
+    slots().begin_own();
+    return driver_.send(frame, Slots::no_token);
+  }
   Status send(const Mcp2515Frame& frame, uint8_t token) { return driver_.send(frame, token); }
 
   bool is_stopped() const { return is_stopped_; }
@@ -221,9 +190,14 @@ class CanSide {
   serial::Mode mode() const { return mode_; }
 
  private:
-  static Mcp2515Config config_of(uint32_t osc_hz, uint32_t bitrate_bps, mcp2515::Mode mode) {
-    return Mcp2515Config(compute_bit_timing(osc_hz, bitrate_bps), mcp2515_filters_of_everything(),
-                         mode);
+  Mcp2515Config config_of(uint32_t osc_hz, uint32_t bitrate_bps, mcp2515::Mode mode) const {
+    return Mcp2515Config(timing_of(osc_hz, bitrate_bps, sample_point_permille_),
+                         mcp2515_filters_of_everything(), mode);
+  }
+  /// One copy of the search: it is long.
+  __attribute__((noinline)) static BitTiming timing_of(uint32_t osc_hz, uint32_t bitrate_bps,
+                                                       uint16_t sample_point_permille) {
+    return compute_bit_timing(osc_hz, bitrate_bps, sample_point_permille);
   }
 
   Status start() {
@@ -269,6 +243,7 @@ class CanSide {
   Clock& clock_;
   uint32_t osc_hz_;
   uint32_t bitrate_bps_;
+  uint16_t sample_point_permille_;
   serial::Mode mode_;
   Status start_status_;
   uint16_t tried_at_;

@@ -53,7 +53,7 @@ class OwnNode {
          static_cast<uint8_t>(value >> 16), static_cast<uint8_t>(value >> 8),
          static_cast<uint8_t>(value)}};
     Frame frame;
-    if (to_frame(message, frame) == Status::ok && can_.send(frame, Slots::no_token) != Status::ok) {
+    if (to_frame(message, frame) == Status::ok && can_.send_own(frame) != Status::ok) {
       // No room: whoever asked gets no answer, and asks again.
     }
   }

@@ -179,7 +179,7 @@ inline void Session::hello(const uint8_t* body, uint8_t length) {
     if (change_ == Change::draining) {
       change_ = Change::none;  // what the session before has asked for
     }
-    can_.slots().begin_session();
+    can_.begin_session();
   }
   set_session(speaks_this ? session : serial::no_session);
   wanted_ |= welcome;
@@ -197,6 +197,7 @@ inline void Session::heard() {
 
 inline void Session::end() {
   set_session(serial::no_session);
+  can_.begin_session();
   wanted_ = 0;
   change_ = Change::none;
   line_.set_rate(serial::base_rate_bps);

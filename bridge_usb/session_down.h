@@ -41,13 +41,15 @@ ROIO_BRIDGE_FAST inline void Session::take_frame(const uint8_t* body, uint8_t le
   }
   Slots& slots = can_.slots();
   const uint8_t token = slots.token_of(sequence);
-  slots.begin(token);
-  const Status status = can_.send(frame, token);
+  const uint8_t life = body[serial::life_at];
+  slots.begin(token, life);
+  const Status status = life == 0 ? Status::empty : can_.send(frame, token);
   if (status != Status::ok) {
     slots.end(token, serial::Outcome::not_sent);
     if (status == Status::full || status == Status::no_chip) {
       return;  // not taken: the PC sends it again when it has waited long enough
     }
+    ++tally_.refused;
   }
   next_ = static_cast<uint8_t>(next_ + 1U);
   gap_told_ = false;

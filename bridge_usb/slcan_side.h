@@ -23,10 +23,13 @@ class SlcanSide {
         tally_(tally),
         clock_(clock),
         bitrate_bps_(default_bitrate_bps),
+        sample_point_permille_(default_sample_point_permille(default_bitrate_bps)),
+        next_(0),
         is_open_(false),
         has_times_(false),
         last_overflows_(0),
-        last_dropped_(0) {}
+        last_dropped_(0),
+        last_given_up_(0) {}
 
   bool is_open() const { return is_open_; }
 
@@ -107,8 +110,7 @@ class SlcanSide {
         is_open_ = false;
         return true;
       case Kind::bitrate:
-        bitrate_bps_ = is_open_ ? bitrate_bps_ : command.bitrate_bps;
-        return !is_open_;
+        return set_bitrate(command);
       case Kind::times_off:
       case Kind::times_on:
         has_times_ = is_open_ ? has_times_ : command.kind == Kind::times_on;
@@ -118,17 +120,43 @@ class SlcanSide {
     }
   }
 
+  /// After one that is refused nothing opens: who does not look at answers, as slcand, would be on
+  /// the bus at another rate than it has asked for.
+  bool set_bitrate(const slcan::Command& command) {
+    const bool accepted =
+        !is_open_ && command.bitrate_bps != 0 && can_.can_make(command.bitrate_bps);
+    bitrate_bps_ = accepted ? command.bitrate_bps : 0;
+    sample_point_permille_ = command.sample_point_permille;
+    return accepted;
+  }
+
   /// One that is open stays so.
   bool open(serial::Mode mode) {
-    if (is_open_) {
+    if (is_open_ || bitrate_bps_ == 0) {
       return false;
     }
-    is_open_ = can_.configure(bitrate_bps_, mode) == Status::ok;
+    can_.begin_session();
+    is_open_ = can_.configure(bitrate_bps_, sample_point_permille_, mode) == Status::ok;
     return is_open_;
   }
 
+  bool give_to_bus(const Frame& frame) {
+    Slots& slots = can_.slots();
+    const uint8_t token = slots.token_of(next_);
+    if (!is_open_ || slots.is_pending(token)) {
+      return false;
+    }
+    slots.begin(token, Slots::default_life);
+    if (can_.send(frame, token) != Status::ok) {
+      slots.end(token, serial::Outcome::not_sent);
+      return false;
+    }
+    ++next_;
+    return true;
+  }
+
   void send(const Frame& frame) {
-    if (!is_open_ || can_.send(frame, Slots::no_token) != Status::ok) {
+    if (!give_to_bus(frame)) {
       answer(slcan::error);
       return;
     }
@@ -138,16 +166,20 @@ class SlcanSide {
 
   /// What has been wrong since it was last asked, and what is.
   uint8_t flags() {
-    const serial::State state = can_.state();
+    // Closed, the controller is where it should be, and has no state.
+    const serial::State state = can_.is_stopped() ? serial::State::active : can_.state();
     const uint32_t overflows = can_.counters().overflows;
+    const uint32_t given_up = can_.counters().not_sent + can_.counters().unknown;
     const uint8_t value =
         static_cast<uint8_t>((overflows != last_overflows_ ? slcan::overrun : 0U) |
                              (tally_.dropped != last_dropped_ ? slcan::receive_full : 0U) |
+                             (given_up != last_given_up_ ? slcan::transmit_full : 0U) |
                              (state == serial::State::warning ? slcan::error_warning : 0U) |
                              (state == serial::State::passive ? slcan::error_passive : 0U) |
                              (state >= serial::State::bus_off ? slcan::bus_error : 0U));
     last_overflows_ = overflows;
     last_dropped_ = tally_.dropped;
+    last_given_up_ = given_up;
     return value;
   }
 
@@ -175,11 +207,14 @@ class SlcanSide {
   Tally& tally_;
   Clock& clock_;
   slcan::LineReader reader_;
-  uint32_t bitrate_bps_;
+  uint32_t bitrate_bps_;  // 0: one was refused
+  uint16_t sample_point_permille_;
+  uint8_t next_;  // slot of a frame to the bus
   bool is_open_;
   bool has_times_;
   uint32_t last_overflows_;
   uint32_t last_dropped_;
+  uint32_t last_given_up_;
 };
 
 }  // namespace bridge

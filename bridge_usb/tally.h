@@ -1,4 +1,5 @@
-/// Tally: all that the bridge counts, in the order of COUNTERS in docs/internals/serial-protocol.md.
+/// Tally: all that the bridge counts, in the order of COUNTERS in
+/// docs/internals/serial-protocol.md.
 #ifndef ROIO_BRIDGE_TALLY_H
 #define ROIO_BRIDGE_TALLY_H
 
@@ -10,7 +11,8 @@ namespace bridge {
 
 class Tally {
  public:
-  Tally(const CanSide& can, Line& line) : dropped(0), damaged(0), can_(can), line_(line) {}
+  Tally(const CanSide& can, Line& line)
+      : dropped(0), damaged(0), refused(0), can_(can), line_(line) {}
 
   /// @param index 0..counter_count - 1.
   uint32_t value(uint8_t index) {
@@ -23,7 +25,7 @@ class Tally {
       case 2:
         return driver.sent;
       case 3:
-        return driver.not_sent;
+        return driver.not_sent + refused;
       case 4:
         return driver.unknown;
       case 5:
@@ -43,6 +45,7 @@ class Tally {
 
   uint32_t dropped;  ///< Frames for the PC that found no room.
   uint32_t damaged;  ///< Records from the PC.
+  uint32_t refused;  ///< Frames from the PC that came too late, or while the bridge only listens.
 
  private:
   const CanSide& can_;

@@ -95,8 +95,9 @@ struct BridgeRig {
   }
   void poll(bool counters = false) { say(serial::Down::poll, {std::uint8_t{counters}}); }
   /// The bytes of a frame's record.
-  [[nodiscard]] Bytes frame_record(const Frame& frame, std::uint8_t sequence) const {
-    Bytes body = bytes_of(tagged_id(frame)) + Bytes{sequence};
+  [[nodiscard]] Bytes frame_record(const Frame& frame, std::uint8_t sequence,
+                                   std::uint8_t life = serial::life_forever) const {
+    Bytes body = bytes_of(tagged_id(frame)) + Bytes{sequence, life};
     if (is_remote(frame.kind)) {
       body.push_back(frame.length);
     } else {
@@ -104,12 +105,25 @@ struct BridgeRig {
     }
     return record_of(body, session);
   }
-  void send(const Frame& frame) { write(frame_record(frame, next_down++)); }
+  void send(const Frame& frame, std::uint8_t life = serial::life_forever) {
+    write(frame_record(frame, next_down++, life));
+  }
+  /// A PC that is there: it polls.
+  void poll_for(sim::SimTime span) {
+    for (sim::SimTime left = span; left > 0ms; left -= 50ms) {
+      poll();
+      bus.run_for(std::min<sim::SimTime>(left, 50ms));
+    }
+  }
+  /// Whether anybody acknowledges what the bridge sends.
+  void set_peer(bool there) {
+    node.controller().set_mode(there ? sim::Controller::Mode::normal : sim::Controller::Mode::off);
+  }
 
   /// HELLO, and what was answered.
   Bytes hello(std::uint32_t number = session_number) {
     records.clear();
-    write(record_of(body_of(serial::Down::hello, 0, Bytes{1} + bytes_of(number)), 0));
+    write(record_of(body_of(serial::Down::hello, 0, Bytes{2} + bytes_of(number)), 0));
     session = number;
     next_down = 0;
     bus.run_for(20ms);

@@ -23,7 +23,7 @@ TEST_P(EachBridge, WelcomeSaysWhatItIs) {
   const auto board = static_cast<std::uint8_t>(static_cast<int>(GetParam()) + 1);
   // The line has a rate unless it is USB; the interrupt pin is wired.
   const std::uint8_t flags = GetParam() == sim::BoardKind::leonardo ? 2 : 3;
-  EXPECT_EQ(welcome, (Bytes{0xF1, 0, 1} + bytes_of(session_number) + bytes_of(0) + bytes_of(0) +
+  EXPECT_EQ(welcome, (Bytes{0xF1, 0, 2} + bytes_of(session_number) + bytes_of(0) + bytes_of(0) +
                       Bytes{ROIO_VERSION_MAJOR, ROIO_VERSION_MINOR, ROIO_VERSION_PATCH, board,
                             flags, 16, 0x3E, 0x80} +
                       bytes_of(500'000) + Bytes{0, 0, 254, 0x1F}));

@@ -132,7 +132,7 @@ TEST(SerialDocument, WorkedFramesAreThoseFrames) {
     if (!up) {
       VectorSink sink;
       RecordWriter<VectorSink> writer(sink, row.session);
-      put_frame_down(writer, frame, row.body[sequence_at]);
+      put_frame_down(writer, frame, row.body[sequence_at], row.body[life_at]);
       EXPECT_EQ(writer.finish(), row.line.size()) << row.what;
       EXPECT_EQ(Bytes(sink.bytes.begin(), sink.bytes.begin() + row.line.size()), row.line)
           << row.what;
@@ -260,20 +260,47 @@ TEST(SerialFrame, ABodyThatNoBusCarriesIsRefused) {
   const Case cases[] = {
       {"no tag", {}},
       {"no sequence", {0x90, 0, 0, 0}},
-      {"nine bytes", {0x90, 0, 0, 0, 0, 1, 2, 3, 4, 5, 6, 7, 8, 9}},
-      {"a standard identifier of 12 bits", {0x00, 0, 0x08, 0, 0}},
-      {"kind 3", {0x60, 0, 0, 0, 0}},
-      {"kind 5", {0xA0, 0, 0, 0, 0}},
-      {"an error report", {0x20, 0, 0, 4, 0}},
-      {"a remote frame without a length", {0xC0, 0, 0, 0, 0}},
-      {"a remote frame with data", {0xC0, 0, 0, 0, 0, 2, 1}},
-      {"a remote frame of length 9", {0xC0, 0, 0, 0, 0, 9}},
+      {"no life", {0x90, 0, 0, 0, 0}},
+      {"nine bytes", {0x90, 0, 0, 0, 0, 0xFF, 1, 2, 3, 4, 5, 6, 7, 8, 9}},
+      {"a standard identifier of 12 bits", {0x00, 0, 0x08, 0, 0, 0xFF}},
+      {"kind 3", {0x60, 0, 0, 0, 0, 0xFF}},
+      {"kind 5", {0xA0, 0, 0, 0, 0, 0xFF}},
+      {"an error report", {0x20, 0, 0, 4, 0, 0xFF}},
+      {"a remote frame without a length", {0xC0, 0, 0, 0, 0, 0xFF}},
+      {"a remote frame with data", {0xC0, 0, 0, 0, 0, 0xFF, 2, 1}},
+      {"a remote frame of length 9", {0xC0, 0, 0, 0, 0, 0xFF, 9}},
   };
   for (const Case& one : cases) {
     Frame frame{};
     EXPECT_FALSE(read_frame(one.body.data(), static_cast<std::uint8_t>(one.body.size()),
                             frame_head_down, frame))
         << one.why;
+  }
+}
+
+// --- life ----------------------------------------------------------------------------------------
+
+TEST(SerialLife, IsTheLongestThatIsNotLonger) {
+  struct Case {
+    std::uint32_t units;
+    std::uint8_t life;
+    std::uint16_t told;
+  };
+  const Case cases[] = {
+      {0, 0x00, 0},           {1, 0x01, 1},           {15, 0x0F, 15},
+      {16, 0x18, 16},         {17, 0x18, 16},         {18, 0x19, 18},
+      {31, 0x1F, 30},         {480, 0x5F, 480},       {488, 0x5F, 480},
+      {976, 0x6F, 960},       {30'719, 0xBE, 28'672}, {30'720, 0xBF, 30'720},
+      {32'767, 0xBF, 30'720}, {32'768, 0xBF, 30'720}, {4'000'000'000, 0xBF, 30'720},
+  };
+  for (const Case& one : cases) {
+    EXPECT_EQ(life_of_units(one.units), one.life) << one.units;
+    EXPECT_EQ(life_units(life_of_units(one.units)), one.told) << one.units;
+  }
+  for (std::uint32_t units = 1; units <= 30'720; ++units) {
+    const std::uint32_t told = life_units(life_of_units(units));
+    ASSERT_LE(told, units);
+    ASSERT_LT((units - told) * 9, units) << units;
   }
 }
 

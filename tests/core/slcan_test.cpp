@@ -144,6 +144,7 @@ TEST(SlcanCommand, SaysWhatIsAsked) {
     std::string_view text;
     Kind kind;
     std::uint32_t bitrate_bps = 0;
+    std::uint16_t sample_point = 875;
   };
   const Case cases[] = {
       {"open", "O", Kind::open},
@@ -156,13 +157,21 @@ TEST(SlcanCommand, SaysWhatIsAsked) {
       {"125 kbit/s", "S4", Kind::bitrate, 125'000},
       {"250 kbit/s", "S5", Kind::bitrate, 250'000},
       {"500 kbit/s", "S6", Kind::bitrate, 500'000},
-      {"800 kbit/s", "S7", Kind::bitrate, 800'000},
-      {"1 Mbit/s", "S8", Kind::bitrate, 1'000'000},
-      {"others' S9, 83.3 kbit/s", "S9", Kind::bad},
-      {"one before S0", "S/", Kind::bad},
-      {"S without a number", "S", Kind::bad},
-      {"S with two", "S66", Kind::bad},
-      {"small s: registers of an SJA1000", "s031C", Kind::bad},
+      {"800 kbit/s", "S7", Kind::bitrate, 800'000, 800},
+      {"1 Mbit/s", "S8", Kind::bitrate, 1'000'000, 750},
+      {"python-can's S9", "S9", Kind::bitrate, 83'333},
+      {"one before S0: a rate that is none", "S/", Kind::bitrate, 0},
+      {"no decimal digit", "SA", Kind::bitrate, 0},
+      {"S without a number", "S", Kind::bitrate, 0},
+      {"S with two", "S66", Kind::bitrate, 0},
+      {"registers of an SJA1000, 4 x 16", "s031C", Kind::bitrate, 125'000, 875},
+      {"jump and triple sampling are not looked at", "sC39C", Kind::bitrate, 125'000, 875},
+      {"6 x 16", "s051c", Kind::bitrate, 83'333, 875},
+      {"the slowest: 64 x 25", "s3F7F", Kind::bitrate, 5'000, 680},
+      {"the fastest, which no controller makes", "s0000", Kind::bitrate, 2'666'666, 666},
+      {"s with a digit too few", "s031", Kind::bitrate, 0},
+      {"with one too many", "s031C0", Kind::bitrate, 0},
+      {"with what is no digit", "s031G", Kind::bitrate, 0},
       {"flags", "F", Kind::flags},
       {"version", "V", Kind::version},
       {"number", "N", Kind::serial_number},
@@ -194,6 +203,9 @@ TEST(SlcanCommand, SaysWhatIsAsked) {
     const Command command = parse(one.text);
     EXPECT_EQ(command.kind, one.kind) << one.why;
     EXPECT_EQ(command.bitrate_bps, one.bitrate_bps) << one.why;
+    if (one.bitrate_bps != 0) {
+      EXPECT_EQ(command.sample_point_permille, one.sample_point) << one.why;
+    }
   }
 }
 

@@ -180,8 +180,8 @@ MUTATIONS = {
         TRANSMIT, ["All/BackToBackTrouble.EachFrameIsSentOnceAndReportedTruly/contention"]),
     "what_became_of_it_is_read": (
         "read what became of a frame when it was taken back",
-        "  if (!requests_.aborting() && !one_shot) {\n    return TxOutcome::sent;\n  }",
-        "  if (true) {\n    return TxOutcome::sent;\n  }",
+        "  return requests_.aborting() || (control_ & mcp2515::Control::one_shot) != 0;",
+        "  return false;",
         TRANSMIT, ["Abort.TakesBackWhatHasNotBegun",
                    "All/TransmitTrouble.EachFrameIsSentOnceAndReportedTruly/aborts"]),
     "a_dlc_above_8_is_8_bytes": (

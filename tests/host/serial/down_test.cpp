@@ -199,12 +199,115 @@ TEST(SerialDown, TheNumbersGoRoundManyTimes) {
   EXPECT_EQ(line.session.down().sent, 2000U);
 }
 
+// --- life ----------------------------------------------------------------------------------------
+
+/// The life in the records of frames that the bridge has heard, in milliseconds; 0xFFFF: for ever.
+std::vector<int> lives(const ScriptedBridge& bridge) {
+  std::vector<int> all;
+  for (const Bytes& body : bridge.frame_records) {
+    const std::uint8_t life = body.at(serial::life_at);
+    all.push_back(life == serial::life_forever
+                      ? 0xFFFF
+                      : serial::life_units(life) * serial::life_unit_us / 1000);
+  }
+  return all;
+}
+
+TEST(SerialLife, WhatIsLeftIsInTheRecord) {
+  Line line({.lifetime = 500ms});
+  line.open();
+  line.bridge.bus_is_free = false;
+  ASSERT_EQ(line.session.offer(numbers(0, 20), line.now), 20U);
+  line.run_for(300ms);  // 16 have gone, 4 wait for room
+  line.bridge.finish(16);
+  line.run_for(50ms);
+  const std::vector<int> told = lives(line.bridge);
+  ASSERT_EQ(told.size(), 20U);
+  for (std::size_t i = 0; i < 16; ++i) {
+    EXPECT_EQ(told[i], 491) << "less the time on the line, and rounded down";
+  }
+  for (std::size_t i = 16; i < 20; ++i) {
+    EXPECT_LE(told[i], 200);
+    EXPECT_GE(told[i], 170);
+  }
+}
+
+TEST(SerialLife, ForEverIsForEver) {
+  Line line({.lifetime = forever});
+  line.open();
+  ASSERT_EQ(line.session.offer(numbers(0, 1), line.now), 1U);
+  line.run_for(50ms);
+  EXPECT_EQ(lives(line.bridge), std::vector<int>{0xFFFF});
+}
+
+TEST(SerialLife, WhatIsSentAgainHasLessLeft) {
+  Line line({.lifetime = 500ms});
+  line.open();
+  line.bridge.may_take = [](const Bytes&) { return false; };  // as one without a controller
+  ASSERT_EQ(line.session.offer(numbers(0, 1), line.now), 1U);
+  line.run_for(450ms);
+  const std::vector<int> told = lives(line.bridge);
+  ASSERT_GE(told.size(), 4U);
+  for (std::size_t i = 1; i < told.size(); ++i) {
+    EXPECT_LE(told[i], told[i - 1] - 80) << i;
+  }
+  line.run_for(200ms);
+  EXPECT_EQ(lives(line.bridge).back(), 0) << "over: the number is used up";
+}
+
+TEST(SerialLife, WhatWaitsInVainIsDroppedAtItsEndAndCounted) {
+  Line line({.lifetime = 500ms});
+  line.open();
+  line.bridge.bus_is_free = false;
+  ASSERT_EQ(line.session.offer(numbers(0, 40), line.now), 40U);
+  line.run_for(495ms);
+  EXPECT_EQ(line.session.down().dropped, 0U);
+  line.run_for(10ms);
+  EXPECT_EQ(line.session.down().dropped, 24U) << "but for the window's 16";
+  EXPECT_EQ(line.session.unsettled(), 16U);
+  line.bridge.finish(16, Outcome::not_sent);
+  line.run_for(50ms);
+  EXPECT_TRUE(line.session.all_done());
+  EXPECT_EQ(line.session.down().not_sent, 16U);
+}
+
+TEST(SerialLife, ALostBridgeDoesNotGetThemLater) {
+  Line line({.lifetime = 500ms});
+  line.open();
+  line.bridge.bus_is_free = false;
+  ASSERT_EQ(line.session.offer(numbers(0, 40), line.now), 40U);
+  line.run_for(50ms);
+  line.bridge.is_deaf = true;
+  line.run_for(1s);
+  EXPECT_EQ(line.session.down().dropped, 24U);
+  line.bridge.is_deaf = false;
+  line.bridge.bus_is_free = true;
+  ASSERT_TRUE(line.run_until([&] { return line.session.phase() == Phase::ready; }));
+  line.run_for(100ms);
+  EXPECT_EQ(line.bridge.on_bus.size(), 16U) << "those of the first session";
+}
+
+TEST(SerialLife, AlsoWithoutAPort) {
+  Line line({.lifetime = 500ms});
+  line.open();
+  line.bridge.bus_is_free = false;
+  ASSERT_EQ(line.session.offer(numbers(0, 40), line.now), 40U);
+  line.run_for(50ms);
+  line.session.end();
+  EXPECT_LE(line.session.deadline(), line.now + 500ms);
+  line.session.on_time(line.now + 500ms);
+  EXPECT_EQ(line.session.down().dropped, 24U);
+  EXPECT_EQ(line.session.deadline(), Time::max());
+}
+
 // --- the window by itself ------------------------------------------------------------------------
 
 /// Slots that all have this outcome.
 constexpr std::uint32_t all(Outcome outcome) {
   return static_cast<std::uint32_t>(outcome) * 0x55555555U;
 }
+
+constexpr Time never = Time::max();
 
 std::size_t send_all(DownFrames& down) {
   std::size_t count = 0;
@@ -216,7 +319,7 @@ std::size_t send_all(DownFrames& down) {
 
 TEST(SerialWindow, ASlotTellsNothingOfAFrameThatIsNotTaken) {
   DownFrames down;
-  ASSERT_EQ(down.offer(numbers(0, 40)), 40U);
+  ASSERT_EQ(down.offer(numbers(0, 40), never), 40U);
   ASSERT_EQ(send_all(down), 11U);
   ASSERT_EQ(down.results(11, all(Outcome::sent)), DownFrames::Progress::some);
   // 16..21 have the slots of 0..5 from now on, but in the bridge not yet.
@@ -231,7 +334,7 @@ TEST(SerialWindow, ASlotTellsNothingOfAFrameThatIsNotTaken) {
 TEST(SerialWindow, WhatLiesOutsideOfItIsNonsense) {
   DownFrames down;
   EXPECT_EQ(down.results(1, 0), DownFrames::Progress::nonsense);
-  ASSERT_EQ(down.offer(numbers(0, 5)), 5U);
+  ASSERT_EQ(down.offer(numbers(0, 5), never), 5U);
   ASSERT_EQ(send_all(down), 5U);
   EXPECT_EQ(down.results(6, all(Outcome::sent)), DownFrames::Progress::nonsense);
   EXPECT_EQ(down.results(255, all(Outcome::sent)), DownFrames::Progress::nonsense);
@@ -245,7 +348,7 @@ TEST(SerialWindow, WhatLiesOutsideOfItIsNonsense) {
 
 TEST(SerialWindow, GoingBackSendsTheSameNumbersAgain) {
   DownFrames down;
-  ASSERT_EQ(down.offer(numbers(0, 4)), 4U);
+  ASSERT_EQ(down.offer(numbers(0, 4), never), 4U);
   ASSERT_EQ(send_all(down), 4U);
   ASSERT_EQ(down.results(1, all(Outcome::pending)), DownFrames::Progress::some);
   down.go_back();
@@ -264,7 +367,7 @@ TEST(SerialWindow, GoingBackSendsTheSameNumbersAgain) {
 
 TEST(SerialWindow, WhatIsDroppedIsCounted) {
   DownFrames down;
-  ASSERT_EQ(down.offer(numbers(0, 64)), 64U);
+  ASSERT_EQ(down.offer(numbers(0, 64), never), 64U);
   const std::size_t sent = send_all(down);
   down.drop_waiting();
   down.begin();

@@ -34,7 +34,7 @@ class Traffic {
     ASSERT_NO_FATAL_FAILURE(expect_arrived_in_order(line_));
     expect_on_bus_in_order(line_);
     const serial::DownFrames::Counters& down = line_.session.down();
-    EXPECT_EQ(down.sent + down.unknown, source_.offered);
+    EXPECT_EQ(down.sent + down.unknown + down.not_sent + down.dropped, source_.offered);
     EXPECT_GE(line_.on_bus.size(), down.sent);
     EXPECT_LE(line_.on_bus.size(), down.sent + down.unknown);
   }
@@ -145,7 +145,7 @@ TEST(SerialFirmware, ALineWithErrorsLosesNothingUncounted) {
 }
 
 TEST(SerialFirmware, AWindowThatNobodyAcknowledgesEndsNoSession) {
-  BoardLine line;
+  BoardLine line({.lifetime = forever});
   line.open();
   line.node.controller().set_mode(sim::Controller::Mode::off);
   Source source(line);
@@ -160,8 +160,23 @@ TEST(SerialFirmware, AWindowThatNobodyAcknowledgesEndsNoSession) {
   EXPECT_EQ(line.session.down().sent, source.offered);
 }
 
+TEST(SerialFirmware, WithoutAControllerFramesComeToTheirEnd) {
+  BoardLine line({.lifetime = 500ms});
+  line.open();
+  line.board.set_chip_fault(sim::SpiWire::Fault::stuck_high);
+  ASSERT_TRUE(
+      line.run_until([&] { return line.session.info().state == BridgeState::no_controller; }, 2s));
+  ASSERT_EQ(line.session.offer(std::vector<Frame>(20, numbered(1)), line.now()), 20U);
+  ASSERT_TRUE(line.run_until([&] { return line.session.all_done(); }, 1s));
+  EXPECT_EQ(line.session.down().not_sent + line.session.down().dropped, 20U);
+  EXPECT_EQ(line.session.counters().sessions, 1U);
+  line.board.set_chip_fault(sim::SpiWire::Fault::none);
+  line.run_for(1s);
+  EXPECT_TRUE(line.on_bus.empty());
+}
+
 TEST(SerialFirmware, WithoutAControllerFramesWait) {
-  BoardLine line;
+  BoardLine line({.lifetime = forever});
   line.open();
   line.board.set_chip_fault(sim::SpiWire::Fault::stuck_high);
   ASSERT_TRUE(

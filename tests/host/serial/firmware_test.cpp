@@ -109,5 +109,89 @@ TEST(SerialFirmware, TimesAreWhenTheFramesWereOnTheBus) {
   }
 }
 
+// --- nothing old ---------------------------------------------------------------------------------
+
+constexpr auto off = sim::Controller::Mode::off;
+constexpr auto normal = sim::Controller::Mode::normal;
+
+std::vector<Frame> some_frames(std::uint32_t count) {
+  std::vector<Frame> frames;
+  for (std::uint32_t i = 0; i < count; ++i) {
+    frames.push_back(numbered(i));
+  }
+  return frames;
+}
+
+std::uint64_t unsent(const SerialSession& session) {
+  return session.down().not_sent + session.down().unknown + session.down().dropped;
+}
+
+TEST(SerialFirmware, WhatNobodyAcknowledgesIsOverInTimeWhereverItIs) {
+  BoardLine line({.lifetime = 500ms});
+  line.open();
+  line.node.controller().set_mode(off);
+  ASSERT_EQ(line.session.offer(some_frames(40), line.now()), 40U);  // line, board, window and lane
+  line.run_for(440ms);
+  EXPECT_EQ(unsent(line.session), 0U);
+  ASSERT_TRUE(line.run_until([&] { return line.session.all_done(); }, 70ms));
+  EXPECT_EQ(unsent(line.session), 40U);
+  EXPECT_EQ(line.session.down().unknown, 0U) << "it is known that they were not sent";
+  line.node.controller().set_mode(normal);
+  line.run_for(2s);
+  EXPECT_TRUE(line.on_bus.empty());
+  EXPECT_EQ(line.counters().not_sent, line.session.down().not_sent);
+}
+
+TEST(SerialFirmware, NothingIsLateOnABusThatOthersHoldUp) {
+  BoardLine line({.lifetime = 300ms});
+  line.open();
+  // Urgent frames of another node, without a gap: the bridge's never get through.
+  bool holding = true;
+  const Frame urgent{0x00000001, FrameKind::extended, 8, {}};
+  line.node.on_sent([&](const Frame& /*frame*/) {
+    if (holding) {
+      line.node.send(urgent);
+    }
+  });
+  line.node.send(urgent);
+  line.node.send(urgent);
+  ASSERT_EQ(line.session.offer(some_frames(20), line.now()), 20U);
+  ASSERT_TRUE(line.run_until([&] { return line.session.all_done(); }, 400ms));
+  holding = false;
+  line.run_for(1s);
+  EXPECT_EQ(line.on_bus.size(), line.session.down().sent);
+  EXPECT_EQ(line.session.down().sent + unsent(line.session), 20U);
+  EXPECT_LE(line.session.down().sent, 1U) << "at most what was on the wire";
+}
+
+TEST(SerialFirmware, AnotherRateForgetsWhatTheOldOneHadToSend) {
+  BoardLine line({.lifetime = 30s});
+  line.open();
+  line.node.controller().set_mode(off);
+  ASSERT_EQ(line.session.offer(some_frames(15), line.now()), 15U);
+  line.run_for(200ms);
+  bool replied = false;
+  line.session.set_bus(500'000, BridgeMode::normal, line.now(),
+                       [&](const Reply& reply) { replied = reply.ok(); });
+  ASSERT_TRUE(line.run_until([&] { return replied && line.session.all_done(); }, 1s));
+  EXPECT_EQ(unsent(line.session), 15U);
+  EXPECT_LE(line.session.down().unknown, 3U) << "what the controller had";
+  line.node.controller().set_mode(normal);
+  line.run_for(2s);
+  EXPECT_TRUE(line.on_bus.empty());
+}
+
+TEST(SerialFirmware, APcThatIsGoneLeavesNothingBehind) {
+  BoardLine line({.lifetime = 30s});
+  line.open();
+  line.node.controller().set_mode(off);
+  ASSERT_EQ(line.session.offer(some_frames(15), line.now()), 15U);
+  line.run_for(200ms);
+  line.bus.run_for(1s);  // killed
+  line.node.controller().set_mode(normal);
+  line.bus.run_for(2s);
+  EXPECT_TRUE(line.on_bus.empty());
+}
+
 }  // namespace
 }  // namespace roio::test

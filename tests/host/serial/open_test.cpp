@@ -105,12 +105,12 @@ TEST(SerialOpen, FailsWhenNobodyAnswersInTime) {
 
 TEST(SerialOpen, FailsWithAnotherVersionAndSaysWhatToDo) {
   PtyBridge bridge;
-  bridge.with([](ScriptedBridge& one) { one.version = 2; });
+  bridge.with([](ScriptedBridge& one) { one.version = 1; });
   const Failure failure = failure_of("serial:" + bridge.path());
   EXPECT_EQ(failure.code, Errc::version_mismatch);
   EXPECT_EQ(failure.what.substr(0, failure.what.rfind(": ")),
             "serial:" + bridge.path() +
-                ": a bridge of protocol version 2 (firmware 0.1.0), and this is version 1; "
+                ": a bridge of protocol version 1 (firmware 0.1.0), and this is version 2; "
                 "`scripts/flash` puts the matching firmware on the board");
 }
 

@@ -123,9 +123,13 @@ void ScriptedBridge::take_frame(const Bytes& body) {
     ++damaged;
     return;
   }
+  frame_records.push_back(body);
   const std::uint8_t sequence = body[sequence_at];
   if (sequence != next_) {
     notice(sequence);
+    return;
+  }
+  if (may_take && !may_take(body)) {
     return;
   }
   ++next_;

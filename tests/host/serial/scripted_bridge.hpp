@@ -60,6 +60,8 @@ class ScriptedBridge {
   bool is_deaf = false;
   /// Called with each body before it is sent; false: it is not.
   std::function<bool(const Bytes&)> may_send;
+  /// Called with the body of each frame that comes next; false: it is not taken.
+  std::function<bool(const Bytes&)> may_take;
 
   // What it has seen.
   struct Rule {
@@ -67,8 +69,9 @@ class ScriptedBridge {
     std::uint32_t mask;
   };
   std::vector<Rule> rules{{0, 0}};
-  std::vector<Frame> on_bus;  // in the order in which they were taken
-  std::vector<Bytes> heard;   // bodies of control records, intact ones
+  std::vector<Frame> on_bus;         // in the order in which they were taken
+  std::vector<Bytes> heard;          // bodies of control records, intact ones
+  std::vector<Bytes> frame_records;  // and of frames, those that come again, too
   int hellos = 0;
   int damaged = 0;
   int unheard = 0;  // records that came while it was deaf

@@ -114,7 +114,7 @@ TEST(SerialResultsWatch, CountsFromWhenThereWasSomethingToTell) {
   EXPECT_EQ(watch.deadline(down), Time::max()) << "nothing was sent";
   EXPECT_FALSE(watch.is_lost(down, now + seconds(10)));
 
-  ASSERT_EQ(down.offer({&some_frame, 1}), 1U);
+  ASSERT_EQ(down.offer({&some_frame, 1}, Time::max()), 1U);
   ASSERT_TRUE(down.next());
   EXPECT_EQ(watch.deadline(down), now + milliseconds(100));
   EXPECT_FALSE(watch.is_stuck(down, now + milliseconds(99)));

@@ -11,8 +11,8 @@ constexpr std::uint32_t doc_session = 0x52AB0149;
 TEST(SerialSession, SaysHelloAsTheDocumentHasItEvery50Milliseconds) {
   SerialSession session({}, [] { return doc_session; });
   const Bytes expected{0x00,  // ends what was before
-                       0x02, 0xE1, 0x0A, 0x01, 0x52, 0xAB, 0x01,
-                       0x49, 0x87, 0x42, 0x7C, 0x36, 0x00};
+                       0x02, 0xE1, 0x0A, 0x02, 0x52, 0xAB, 0x01,
+                       0x49, 0x73, 0xF2, 0x4F, 0x7E, 0x00};
   session.begin(1s);
   for (Time now = 1s; now < 2s; now += 50ms) {
     session.on_time(now - 1ns);
@@ -113,12 +113,12 @@ TEST(SerialSession, IsSilentAboutABridgeThatStartsLate) {
 
 TEST(SerialSession, OpensNoneWithAnotherVersion) {
   Line line;
-  line.bridge.version = 2;
+  line.bridge.version = 1;
   line.session.begin(line.now);
   line.run_for(300ms);
   EXPECT_EQ(line.session.phase(), Phase::calling);
   ASSERT_TRUE(line.session.other_version());
-  EXPECT_EQ(line.session.other_version()->protocol, 2);
+  EXPECT_EQ(line.session.other_version()->protocol, 1);
   ASSERT_TRUE(line.session.other_version()->firmware);
   EXPECT_EQ(to_string(*line.session.other_version()->firmware), "0.1.0");
 }

@@ -58,9 +58,10 @@ std::uint32_t session_of(const Bytes& body) {
   return serial::session_of(body[0], open_session);
 }
 
-Bytes encode_down(const Frame& frame, std::uint8_t sequence) {
-  return record(open_session,
-                [&](Writer& writer) { serial::put_frame_down(writer, frame, sequence); });
+Bytes encode_down(const Frame& frame, const Bytes& head) {
+  return record(open_session, [&](Writer& writer) {
+    serial::put_frame_down(writer, frame, head[serial::sequence_at], head[serial::life_at]);
+  });
 }
 
 /// As put_frame_down(), with the time too.
@@ -85,8 +86,8 @@ void check_frame(const Bytes& body, std::uint8_t head) {
   }
   require(is_valid(frame) && frame.kind != FrameKind::error,
           "a frame read is one that a bus carries");
-  require((head == serial::frame_head_down ? encode_down(frame, body[serial::sequence_at])
-                                           : encode_up(frame, body)) == encode(body, open_session),
+  require((head == serial::frame_head_down ? encode_down(frame, body) : encode_up(frame, body)) ==
+              encode(body, open_session),
           "a frame comes back");
 }
 

@@ -35,8 +35,9 @@ std::string in_order(std::string_view text) {
 
 void check_command(std::string_view text) {
   const slcan::Command command = slcan::parse(text.data(), static_cast<std::uint8_t>(text.size()));
-  require((command.kind == Kind::bitrate) == (command.bitrate_bps != 0),
-          "a rate is one of a bitrate");
+  require(command.kind == Kind::bitrate || command.bitrate_bps == 0, "a rate is one of a bitrate");
+  require((command.kind == Kind::bitrate) == (text.starts_with('S') || text.starts_with('s')),
+          "who asks for a rate gets one or none");
   require((command.kind == Kind::empty) == text.empty(), "nothing is what is empty");
   if (command.kind != Kind::frame) {
     return;

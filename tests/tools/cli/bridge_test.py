@@ -154,7 +154,8 @@ class ShowTest(BridgeTest):
         self.assertEqual((status, err), (0, ""))
         self.assertEqual(
             re.sub(r'"(damaged|resent|retries)":\d+', r'"\1":N', out),
-            f'{{"port":"{self.port}","board":"uno","firmware":"0.1.0","bitrate":500000,"mode":"normal",'
+            f'{{"port":"{self.port}","board":"uno","firmware":"0.1.0","bitrate":500000,'
+            '"realBitrate":500000,"mode":"normal",'
             '"state":"error-active","transmitErrors":0,"receiveErrors":0,"address":"0.254",'
             '"crystalKhz":16000,"interruptWired":true,"lineRate":1000000,'
             '"counters":{"dropped":0,"overflows":0,"discarded":0,"sent":5,"notSent":0,"unknown":0,'
@@ -206,12 +207,27 @@ class SetTest(BridgeTest):
 
     def test_what_the_bridge_refuses_is_said(self):
         self.assertEqual(
-            self.run_cli("bridge", "set", self.port, "--bitrate", "999999"),
+            self.run_cli("bridge", "set", self.port, "--bitrate", "980000"),
             (1, "",
-             f"roio-cli: serial:{self.port}: bit rate 999999, mode normal: the controller cannot make "
+             f"roio-cli: serial:{self.port}: bit rate 980000, mode normal: the controller cannot make "
              "this bit rate from its crystal: the bridge refused\n"),
         )
         self.assertEqual(self.shown()["bitrate"], 500000)
+
+
+    def test_a_rate_that_the_crystal_nearly_makes_is_taken_and_the_true_one_shown(self):
+        for asked, real in ((83300, 83333), (33300, 33333), (95200, 95238)):
+            self.set("--bitrate", str(asked))
+            self.board.wait_for(f"usb: can: normal, {real} bit/s")
+            shown = self.shown()
+            self.assertEqual((shown["bitrate"], shown["realBitrate"]), (asked, real))
+            self.assertIn(f"  bit rate     {asked} bit/s: {real} is what the crystal makes\n",
+                          self.run_cli("bridge", "show", self.port)[1])
+        # In the name of the bus, too, and no session is lost over the difference.
+        bus = f"serial:{self.port}?bitrate=83300"
+        self.assertEqual(self.run_cli("dump", "-v", "-T", "1500", bus),
+                         (0, "", f"roio-cli: serial:{self.port}: listening\n"
+                                 f"roio-cli: serial:{self.port}: 0 frames shown, 0 lost\n"))
 
 
 class IdentifyTest(BridgeTest):

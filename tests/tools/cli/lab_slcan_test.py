@@ -4,11 +4,12 @@ can-utils, and by python-can. Runs in scripts/lab: root."""
 
 import os
 import subprocess
+import time
 
 import can
 
 from bridge_test import BridgeTest
-from driver import GUARD, main
+from driver import GUARD, SLOWER, main
 from lab_can_utils_test import Peer, frames, run, wait_until
 
 FRAMES = ["123#A5", "7FF#", "1000400A#5A2D00", "1FFFFFFF#0102030405060708"]
@@ -51,6 +52,23 @@ class PythonCanTest(BridgeTest):
             message = bus.recv(GUARD)
             self.assertEqual((message.arbitration_id, message.is_extended_id, bytes(message.data)),
                              (0x10004003, True, b"\x01\x02"))
+
+    def open(self, **rate):
+        return can.Bus(interface="slcan", channel=self.port, ttyBaudrate=115200, sleep_after_open=0.1,
+                       **rate)
+
+    def test_the_rates_of_python_can_are_those_of_the_bus(self):
+        for rate, real in (({"bitrate": 83300}, 83333), ({"btr": "031C"}, 125000),
+                           ({"btr": "051C"}, 83333), ({"bitrate": 500000}, 500000)):
+            with self.open(**rate):
+                self.board.wait_for(f"usb: can: normal, {real} bit/s")
+
+    def test_at_a_rate_that_is_refused_it_is_on_no_bus(self):
+        dump = self.dump("-T", "4000", "local:robot")
+        with self.open(btr="0000") as bus:
+            bus.send(can.Message(arbitration_id=0x1000400A, data=[0x5A, 0x2D, 0]))
+            time.sleep(SLOWER)
+        self.assertEqual(dump.result()[:2], (0, ""))
 
 
 if __name__ == "__main__":

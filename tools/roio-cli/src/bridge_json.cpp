@@ -45,6 +45,7 @@ void append_json(Buffer& out, const BridgeReport& report) {
   json["board"] = to_string(info.board);
   json["firmware"] = to_string(info.firmware);
   json["bitrate"] = info.bitrate_bps;
+  json["realBitrate"] = info.real_bitrate_bps == 0 ? Json() : Json(info.real_bitrate_bps);
   json["mode"] = to_string(info.mode);
   json["state"] = to_string(info.state);
   json["transmitErrors"] = info.transmit_errors;

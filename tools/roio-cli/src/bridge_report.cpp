@@ -21,6 +21,14 @@ void append_fact(Buffer& out, const char* name, const std::string& value) {
   fmt::format_to(std::back_inserter(out), "  {:<12} {}\n", name, value);
 }
 
+/// What the crystal makes is said where it is not what was asked for.
+std::string bitrate_text(const BridgeInfo& info) {
+  return info.real_bitrate_bps == 0 || info.real_bitrate_bps == info.bitrate_bps
+             ? fmt::format("{} bit/s", info.bitrate_bps)
+             : fmt::format("{} bit/s: {} is what the crystal makes", info.bitrate_bps,
+                           info.real_bitrate_bps);
+}
+
 std::string crystal(const BridgeInfo& info) {
   return info.osc_khz == 0 ? "unknown, as no controller answers"
                            : fmt::format("{:g} MHz", info.osc_khz / 1000.0);
@@ -32,7 +40,7 @@ void append_text(Buffer& out, const BridgeReport& report) {
   const BridgeInfo& info = report.info;
   fmt::format_to(std::back_inserter(out), "{}: {}, firmware {}\n", info.port, to_string(info.board),
                  to_string(info.firmware));
-  append_fact(out, "bit rate", fmt::format("{} bit/s", info.bitrate_bps));
+  append_fact(out, "bit rate", bitrate_text(info));
   append_fact(out, "mode", to_string(info.mode));
   append_fact(out, "state",
               fmt::format("{}, error counters: transmit {}, receive {}", to_string(info.state),

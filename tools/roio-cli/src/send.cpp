@@ -3,6 +3,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <roio/bridge.hpp>
 #include <roio/error.hpp>
 #include <roio/text.hpp>
 #include <span>
@@ -14,6 +15,7 @@
 #include "interrupt.hpp"
 #include "output.hpp"
 #include "record_format.hpp"
+#include "send_outcome.hpp"
 
 namespace roio::cli {
 namespace {
@@ -38,6 +40,7 @@ std::unique_ptr<Bus> open_bus(const SendOptions& options) {
   OpenOptions open_options;
   open_options.send_only = true;
   open_options.in_order = !options.frame;  // what was recorded comes out as it was
+  open_options.lifetime = options.timeout;
   const bool one = options.frame && options.count == 1;
   if (!options.wait && !one) {
     return open_until_signal(options.bus, open_options);
@@ -108,10 +111,9 @@ class Sender {
         return false;
       }
       // The timeout is each frame's: as long as some go out, the others may wait on.
-      if (transfer.result != Result::ok && transfer.count == 0) {
-        throw Failure(bus_.name() + ": not sent within " +
-                      std::to_string(options_.timeout.count()) + " ms, the bus is " +
-                      to_string(bus_.state()) + "; " + count_of(sent_, "message") + " sent before");
+      const bool waited_in_vain = transfer.result != Result::ok && transfer.count == 0;
+      if (waited_in_vain || has_given_up(bus_)) {
+        throw Failure(why_not_sent(bus_, options_.timeout, sent_));
       }
     }
     return true;
@@ -243,7 +245,11 @@ Unsent send_lines(const SendOptions& options, Sender& sender) {
 }
 
 // What send() accepted and close() could not hand over.
-void close(Bus& bus) {
+void close(const SendOptions& options, Bus& bus, std::uint64_t sent) {
+  wait_for_outcomes(bus);
+  if (has_given_up(bus)) {
+    throw Failure(why_not_sent(bus, options.timeout, sent));
+  }
   bus.close();
   if (const std::uint64_t unheard = bus.statistics().unheard; unheard > 0) {
     note(bus.name() + ": nobody else was there to have " + count_of(unheard, "message"));
@@ -302,7 +308,7 @@ int send(const SendOptions& options) {
   } else {
     unsent = send_lines(options, sender);
   }
-  close(*bus);
+  close(options, *bus, sender.sent());
   return finish(options, sender, unsent);
 }
 

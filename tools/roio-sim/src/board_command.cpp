@@ -136,17 +136,24 @@ bool is_verb(std::string_view word) {
   return std::find(verbs.begin(), verbs.end(), word) != verbs.end();
 }
 
+constexpr std::array<std::string_view, 5> own_verbs{"quit", "help", "wait", "alone", "together"};
+
 Parsed<Action> parse_own_action(std::string_view verb, std::string_view& rest) {
-  // No temporary variants: gcc 12 takes parts of them for uninitialised.
-  Action action = Quit{};
-  if (verb == "help") {
-    action = Help{};
+  // No temporary variants, and one that begins as the largest of these: gcc 12 takes parts of others
+  // for uninitialised.
+  Action action = Wait{sim::SimTime(0)};
+  if (verb == "quit") {
+    action.emplace<Quit>();
+  } else if (verb == "help") {
+    action.emplace<Help>();
   } else if (verb == "wait") {
     const auto time = parse_seconds(take_word(rest));
     if (!time) {
       return time.error();
     }
-    action = Wait{*time};
+    std::get<Wait>(action).time = *time;
+  } else {
+    action.emplace<Alone>().alone = verb == "alone";
   }
   return action;
 }
@@ -156,7 +163,7 @@ Parsed<Action> parse_own_action(std::string_view verb, std::string_view& rest) {
 Parsed<Instruction> parse_instruction(std::string_view line) {
   std::string_view rest = line;
   const std::string_view first = take_word(rest);
-  const bool own = first == "quit" || first == "help" || first == "wait";
+  const bool own = std::find(own_verbs.begin(), own_verbs.end(), first) != own_verbs.end();
   if (std::string_view after = rest; !own && !is_verb(take_word(after)) && is_verb(first)) {
     const std::string_view all = line.substr(line.find_first_not_of(blanks));
     return expected("a board's name first: NAME " + std::string(all), "");
@@ -185,6 +192,7 @@ const char* const command_help =
     "NAME reset                the reset button\n"
     "NAME unplug, NAME plug    the cable to the CAN chip\n"
     "NAME unplug serial        its terminal (--serial-pty), until NAME plug serial\n"
+    "alone                     nobody but the boards is on their bus, until together\n"
     "wait SECONDS              what follows comes so much later\n"
     "quit\n";
 

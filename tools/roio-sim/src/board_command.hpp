@@ -49,13 +49,17 @@ struct Plug {
 struct Wait {
   sim::SimTime time;
 };
+/// Whether nobody but the boards is on their bus.
+struct Alone {
+  bool alone = true;
+};
 struct Quit {};
 struct Help {};
 
-using Action = std::variant<Press, SetPin, SetAnalog, Serial, Reset, Plug, Wait, Quit, Help>;
+using Action = std::variant<Press, SetPin, SetAnalog, Serial, Reset, Plug, Wait, Alone, Quit, Help>;
 
 struct Instruction {
-  std::string board;  ///< Empty for wait, quit and help.
+  std::string board;  ///< Empty for wait, alone, together, quit and help.
   Action action;
 };
 

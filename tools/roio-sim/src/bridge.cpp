@@ -35,6 +35,10 @@ std::size_t Bridge::room() const {
   return node_.waiting() < most_in_node ? most_in_node - node_.waiting() : 0;
 }
 
+void Bridge::set_alone(bool alone) {
+  node_.controller().set_mode(alone ? sim::Controller::Mode::off : sim::Controller::Mode::normal);
+}
+
 bool Bridge::is_blocked() const {
   return waiting_.size() >= most_waiting;
 }

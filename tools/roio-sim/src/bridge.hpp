@@ -35,6 +35,9 @@ class Bridge {
   /// @throws cli::Failure: it has taken nothing of what waits for it for longer than 5 s.
   void give(Clock::time_point now);
 
+  /// The node is off: nothing passes, and nobody acknowledges what a board sends that is alone.
+  void set_alone(bool alone);
+
   /// So much waits for the other bus that no more should come.
   [[nodiscard]] bool is_blocked() const;
   /// To be polled for input; -1: nothing could be taken now, or there is no other bus.

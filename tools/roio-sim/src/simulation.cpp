@@ -249,6 +249,8 @@ class Simulation {
       const Instruction instruction = script_.next();
       if (const auto* const wait = std::get_if<Wait>(&instruction.action)) {
         script_.wait_until(bus_.now() + wait->time);
+      } else if (const auto* const alone = std::get_if<Alone>(&instruction.action)) {
+        bridge_->set_alone(alone->alone);
       } else if (std::holds_alternative<Quit>(instruction.action)) {
         quit_ = true;
       } else if (std::holds_alternative<Help>(instruction.action)) {

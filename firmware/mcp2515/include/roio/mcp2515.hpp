@@ -179,6 +179,10 @@ struct Mcp2515Traits {
   /// Called from send(), poll(), receive(), abort(), begin() and check_clock(), with the token that
   /// send() was given. Must not call the driver. Only with reports_outcomes.
   void on_outcome(uint8_t, TxOutcome) {}
+  /// Which frames abort() takes back, by their tokens. Called from abort(), and until in_flight()
+  /// is 0 from what on_outcome() is called from. Must not call the driver. Only with
+  /// reports_outcomes.
+  static bool is_over(uint8_t) { return true; }
 };
 
 /// @tparam RxQueue frames that poll() fetches ahead of receive(), 0..127, 13 bytes each. 0: each
@@ -267,8 +271,9 @@ class Mcp2515 {
   /// @return ok; no_chip: no answer.
   Status stop();
 
-  /// Takes back all frames that are not yet on the wire. Each is reported, as aborted or, if it was
-  /// too late, as sent; poll() until in_flight() is 0. Meanwhile send() says full.
+  /// Takes back all frames that are not yet on the wire and that Traits::is_over(). Each is
+  /// reported, as aborted or, if it was too late, as sent; poll() until in_flight() is 0. Meanwhile
+  /// send() says full. Of the others those that the chip has go out after that, in their order.
   template <typename T = Traits>
   void abort();
 
@@ -385,9 +390,13 @@ class Mcp2515 {
   bool load(const Mcp2515Frame& frame, uint8_t token);
   Order& order() { return requests_; }
   void settle(uint8_t quick);
+  ROIO_MCP2515_OUT_OF_LINE void finish_abort();
+  bool may_end_otherwise() const;
+  ROIO_MCP2515_OUT_OF_LINE void end_somehow(uint8_t buffer);
   TxOutcome outcome_of(uint8_t buffer);
   void end(uint8_t requests, TxOutcome outcome);
   void report(uint8_t token, TxOutcome outcome);
+  bool has_over_in_chip();
   ROIO_MCP2515_OUT_OF_LINE static void count(typename Traits::Count& counter) { ++counter; }
 
   // looking after the chip

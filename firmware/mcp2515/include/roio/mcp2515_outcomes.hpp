@@ -29,14 +29,22 @@ struct Waiting<false> {
 template <bool ReportsOutcomes>
 class Requests {
  public:
-  constexpr Requests() : aborting_(false), tokens_() {}
+  constexpr Requests() : aborting_(false), again_(0), tokens_() {}
   bool aborting() const { return aborting_; }
   void set_aborting(bool aborting) { aborting_ = aborting; }
+  /// Taken back with others, and to be sent all the same: bits TXREQ as in READ STATUS.
+  void add_again(uint8_t request) { again_ |= request; }
+  uint8_t take_again() {
+    const uint8_t again = again_;
+    again_ = 0;
+    return again;
+  }
   void keep(uint8_t buffer, uint8_t token) { tokens_[buffer >> 1] = token; }
   uint8_t token_of(uint8_t buffer) const { return tokens_[buffer >> 1]; }
 
  private:
   bool aborting_;
+  uint8_t again_;
   uint8_t tokens_[3];
 };
 
@@ -45,6 +53,8 @@ class Requests<false> {
  public:
   static bool aborting() { return false; }
   static void set_aborting(bool) {}
+  static void add_again(uint8_t) {}
+  static uint8_t take_again() { return 0; }
   static void keep(uint8_t, uint8_t) {}
   static uint8_t token_of(uint8_t) { return 0; }
 };

@@ -99,9 +99,22 @@ ROIO_MCP2515_MEMBER(void)::settle(uint8_t quick) {
     end(ended, TxOutcome::sent);
   }
   if (requests_.aborting() && pending_ == 0) {
-    modify_register(Register::canctrl, mcp2515::Control::abort_all, 0);
-    requests_.set_aborting(false);
+    finish_abort();
   }
+}
+
+/// The chip has let go of all. What is to be sent all the same is still in its buffers.
+ROIO_MCP2515_MEMBER(void)::finish_abort() {
+  modify_register(Register::canctrl, mcp2515::Control::abort_all, 0);
+  requests_.set_aborting(false);
+  const uint8_t again = requests_.take_again();
+  for (uint8_t buffer = mcp2515::urgent_buffer; again != 0 && buffer != 0; buffer >>= 1) {
+    if ((again & QuickStatus::txreq(buffer)) != 0) {
+      Transaction transaction(port_);
+      transaction.exchange(mcp2515::request_to_send(buffer));
+    }
+  }
+  pending_ = again;
 }
 
 /// Reports what became of these requests: bits TXREQ as in READ STATUS.
@@ -116,20 +129,37 @@ ROIO_MCP2515_MEMBER(void)::end(uint8_t requests, TxOutcome outcome) {
   }
   uint8_t request = QuickStatus::txreq(mcp2515::urgent_buffer);
   for (uint8_t buffer = mcp2515::urgent_buffer; buffer != 0; buffer >>= 1, request >>= 2) {
-    if ((requests & request) != 0) {
-      report(requests_.token_of(buffer),
-             outcome == TxOutcome::unknown ? outcome : outcome_of(buffer));
+    if ((requests & request) == 0) {
+      continue;
+    }
+    if (outcome == TxOutcome::unknown || !may_end_otherwise()) {
+      report(requests_.token_of(buffer), outcome);
+    } else {
+      end_somehow(buffer);
     }
   }
 }
 
 /// A request ends by success, unless somebody has asked for less.
+ROIO_MCP2515_MEMBER(bool)::may_end_otherwise() const {
+  return requests_.aborting() || (control_ & mcp2515::Control::one_shot) != 0;
+}
+
+/// What the chip says of it. A frame that was taken back with others, and is not over, ends later:
+/// finish_abort() sends it again.
+ROIO_MCP2515_MEMBER(void)::end_somehow(uint8_t buffer) {
+  const uint8_t token = requests_.token_of(buffer);
+  const TxOutcome outcome = outcome_of(buffer);
+  if (outcome == TxOutcome::aborted && !traits_.is_over(token)) {
+    requests_.add_again(QuickStatus::txreq(buffer));
+  } else {
+    report(token, outcome);
+  }
+}
+
 ROIO_MCP2515_MEMBER(TxOutcome)::outcome_of(uint8_t buffer) {
   using mcp2515::TxControl;
   const bool one_shot = (control_ & mcp2515::Control::one_shot) != 0;
-  if (!requests_.aborting() && !one_shot) {
-    return TxOutcome::sent;
-  }
   const uint8_t control = read_register(mcp2515::txbctrl(buffer));
   if ((control & TxControl::fixed) != order().level_of(buffer)) {
     return TxOutcome::unknown;  // that is no answer of a chip that has ended this request
@@ -155,15 +185,29 @@ template <typename Port, uint8_t RxQueue, uint8_t TxQueue, typename Traits>
 template <typename T>
 void Mcp2515<Port, RxQueue, TxQueue, Traits>::abort() {
   static_assert(T::reports_outcomes, "abort() needs Traits::reports_outcomes");
-  while (!tx_queue_.empty()) {
-    const uint8_t token = tx_queue_.front().kept();
+  for (uint8_t left = tx_queue_.size(); left != 0; --left) {
+    const Waiting one = tx_queue_.front();
     tx_queue_.pop();
-    report(token, TxOutcome::aborted);
+    if (traits_.is_over(one.kept())) {
+      report(one.kept(), TxOutcome::aborted);
+    } else {
+      tx_queue_.next() = one;
+      tx_queue_.commit();
+    }
   }
-  if (running_ && pending_ != 0) {
+  if (running_ && has_over_in_chip()) {
     requests_.set_aborting(true);
     modify_register(Register::canctrl, mcp2515::Control::abort_all, mcp2515::Control::abort_all);
   }
+}
+
+ROIO_MCP2515_MEMBER(bool)::has_over_in_chip() {
+  for (uint8_t buffer = mcp2515::urgent_buffer; buffer != 0; buffer >>= 1) {
+    if (mcp2515::is_pending(pending_, buffer) && traits_.is_over(requests_.token_of(buffer))) {
+      return true;
+    }
+  }
+  return false;
 }
 
 }  // namespace roio

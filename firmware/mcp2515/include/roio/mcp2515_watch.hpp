@@ -193,7 +193,7 @@ ROIO_MCP2515_MEMBER(void)::forget_chip() {
   rx1_is_older_ = 0;
   requests_.set_aborting(false);
   error_flags_ = 0;
-  end(pending_, TxOutcome::unknown);
+  end(pending_ | requests_.take_again(), TxOutcome::unknown);
   pending_ = 0;
 }
 

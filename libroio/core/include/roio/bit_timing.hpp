@@ -83,47 +83,40 @@ constexpr uint16_t default_sample_point_permille(uint32_t bitrate_bps) {
 
 namespace detail {
 
-/// A wanted bit. Its length is counted in pairs of clocks, which is prescaler * quanta: never more
-/// than 1600, so 16 bits do.
+/// What is asked for, within is_in_reach().
 struct WantedBit {
-  uint16_t shortest;
-  uint16_t longest;
+  uint32_t osc_hz;
+  uint32_t bitrate_bps;
   uint16_t sample_point;  ///< 0..1000.
 };
 
-constexpr uint16_t max_pairs = max_prescaler * max_quanta;
-
-constexpr uint16_t capped(uint32_t value, uint16_t most) {
-  return value < most ? static_cast<uint16_t>(value) : most;
-}
-
 constexpr uint32_t max_bitrate_bps = 1000000;  ///< Of classic CAN, and of the chip.
+constexpr uint8_t rate_tolerance = 200;        ///< One part in so many.
+constexpr uint32_t none = UINT32_MAX;          ///< An error: that is no timing at all.
 
-/// No faster than the bus goes; and keeps the bounds below from dividing by zero and from wrapping.
-/// No bit is shorter than 10 clocks, so what this refuses besides has no timing anyway; the 1 is
-/// the tolerance. 8 costs no division.
+/// No faster than the bus goes; and keeps what is below from dividing by zero and from wrapping. No
+/// bit is shorter than 10 clocks, so what this refuses besides has no timing anyway. 8 costs no
+/// division.
 constexpr bool is_in_reach(uint32_t osc_hz, uint32_t bitrate_bps) {
   return osc_hz > 0U && bitrate_bps > 0U && bitrate_bps <= max_bitrate_bps &&
          bitrate_bps - 1U <= osc_hz / 8U;
 }
 
-// bitrate - 1 < osc / clocks < bitrate + 1, solved for whole clocks: exact, in 32 bits.
-constexpr uint16_t shortest_pairs(uint32_t osc_hz, uint32_t bitrate_bps) {
-  return static_cast<uint16_t>(capped(osc_hz / (bitrate_bps + 1U) / 2U, max_pairs) + 1U);
+constexpr uint8_t checked_prescaler(uint32_t prescaler) {
+  return prescaler <= max_prescaler ? static_cast<uint8_t>(prescaler) : uint8_t{0};
 }
-constexpr uint16_t longest_pairs(uint32_t osc_hz, uint32_t bitrate_bps) {
-  return bitrate_bps == 1U ? max_pairs : capped((osc_hz - 1U) / (bitrate_bps - 1U) / 2U, max_pairs);
+/// That comes closest to the wanted length with this many quanta; 0 when none does.
+constexpr uint8_t prescaler_for(const WantedBit& bit, uint8_t quanta) {
+  return checked_prescaler((bit.osc_hz / (bit.bitrate_bps * quanta) + 1U) / 2U);
 }
 
-/// The smallest prescaler that gives the wanted length with this many quanta; 0 when none does.
-constexpr uint8_t checked_prescaler(const WantedBit& bit, uint8_t quanta, uint16_t prescaler) {
-  return prescaler <= max_prescaler && prescaler * quanta <= bit.longest
-             ? static_cast<uint8_t>(prescaler)
-             : uint8_t{0};
-}
-constexpr uint8_t prescaler_for(const WantedBit& bit, uint8_t quanta) {
-  return checked_prescaler(bit, quanta,
-                           static_cast<uint16_t>((bit.shortest + quanta - 1U) / quanta));
+/// |osc / clocks - bitrate| in whole bit/s: 0 is the very rate.
+constexpr uint32_t rate_error(const WantedBit& bit, uint32_t clocks) {
+  return clocks == 0U
+             ? none
+             : (bit.osc_hz > bit.bitrate_bps * clocks ? bit.osc_hz - bit.bitrate_bps * clocks
+                                                      : bit.bitrate_bps * clocks - bit.osc_hz) /
+                   clocks;
 }
 
 constexpr uint8_t larger(uint8_t a, uint8_t b) {
@@ -156,18 +149,23 @@ constexpr uint16_t sample_point_error(uint16_t real, uint16_t asked) {
   return static_cast<uint16_t>(real <= asked ? asked - real : 1000U + real - asked);
 }
 
-constexpr uint16_t error_of(const WantedBit& bit, uint8_t quanta) {
-  return prescaler_for(bit, quanta) == 0
-             ? UINT16_MAX
-             : sample_point_error(
-                   static_cast<uint16_t>(1000U * quanta_before_sample(quanta, bit.sample_point) /
-                                         quanta),
-                   bit.sample_point);
+/// The rate counts more than the sample point.
+constexpr uint32_t error_of(uint32_t rate_off, uint16_t sample_point_off, uint32_t bitrate_bps) {
+  return rate_off > bitrate_bps / rate_tolerance ? none : rate_off * 2048U + sample_point_off;
+}
+constexpr uint32_t error_of(const WantedBit& bit, uint8_t quanta) {
+  return error_of(
+      rate_error(bit, 2U * quanta * prescaler_for(bit, quanta)),
+      sample_point_error(
+          static_cast<uint16_t>(1000U * quanta_before_sample(quanta, bit.sample_point) / quanta),
+          bit.sample_point),
+      bit.bitrate_bps);
 }
 
 /// Tries `quanta` and everything below; on equal terms the best so far stays. A loop to an
 /// optimising compiler, and 21 deep to any other.
-constexpr uint8_t best_quanta(const WantedBit& bit, uint8_t quanta, uint8_t best, uint16_t error) {
+/// @return 0: none.
+constexpr uint8_t best_quanta(const WantedBit& bit, uint8_t quanta, uint8_t best, uint32_t error) {
   return quanta < min_quanta ? best
          : error_of(bit, quanta) < error
              ? best_quanta(bit, static_cast<uint8_t>(quanta - 1U), quanta, error_of(bit, quanta))
@@ -189,36 +187,36 @@ constexpr BitTiming from_quanta(uint8_t prescaler, uint8_t quanta, uint8_t befor
                        static_cast<uint8_t>(quanta - before));
 }
 
-/// All zero when no prescaler gives the wanted length with this many quanta.
 constexpr BitTiming timing_of(const WantedBit& bit, uint8_t quanta) {
-  return prescaler_for(bit, quanta) == 0
-             ? BitTiming{}
-             : from_quanta(prescaler_for(bit, quanta), quanta,
-                           quanta_before_sample(quanta, bit.sample_point));
+  return quanta == 0 ? BitTiming{}
+                     : from_quanta(prescaler_for(bit, quanta), quanta,
+                                   quanta_before_sample(quanta, bit.sample_point));
 }
 
 constexpr BitTiming best_timing(const WantedBit& bit) {
-  return timing_of(bit, best_quanta(bit, max_quanta, max_quanta, UINT16_MAX));
+  return timing_of(bit, best_quanta(bit, max_quanta, 0, none));
 }
 
 }  // namespace detail
 
 /// Searches the timing whose sample point comes closest to the one asked for, among those whose
-/// real rate is less than 1 bit/s from the one asked for. As in Linux, a sample point that is not
+/// real rate is less than 1 bit/s from the one asked for; when there is none, among those of the
+/// one rate that is closest to it, if that is within 0.5 %. As in Linux, a sample point that is not
 /// later than asked wins over any that is; on equal terms the one of more quanta. Without triple
 /// sampling; sjw as wide as sensible: 4, but no wider than phase_seg1 or half of phase_seg2.
 /// @param osc_hz of the crystal itself; the chip takes 1 to 40 MHz, which is not checked here.
 /// @param bitrate_bps up to 1 Mbit/s, what CAN and the chip are made for.
 /// @param sample_point_permille more than 1000 counts as 1000.
-/// @return all zero, so not valid, when no timing gives that rate: never another rate instead.
-/// Cost at run time on AVR: 1 ms at 16 MHz, 40 bytes of stack, 800 bytes of flash with the
-/// divisions. bit_timing() below costs none of it.
+/// @return what bitrate_bps() tells the real rate of; all zero, so not valid, when no timing comes
+/// within 0.5 % of the rate.
+/// Cost at run time on AVR: some milliseconds at 16 MHz, 40 bytes of stack, 1,050 bytes of flash
+/// and the divisions. bit_timing() below costs none of it.
 constexpr BitTiming compute_bit_timing(uint32_t osc_hz, uint32_t bitrate_bps,
                                        uint16_t sample_point_permille) {
   return detail::is_in_reach(osc_hz, bitrate_bps)
-             ? detail::best_timing(detail::WantedBit{detail::shortest_pairs(osc_hz, bitrate_bps),
-                                                     detail::longest_pairs(osc_hz, bitrate_bps),
-                                                     detail::capped(sample_point_permille, 1000)})
+             ? detail::best_timing(detail::WantedBit{
+                   osc_hz, bitrate_bps,
+                   sample_point_permille < 1000 ? sample_point_permille : uint16_t{1000}})
              : BitTiming{};
 }
 
@@ -232,7 +230,8 @@ namespace detail {
 template <uint32_t OscHz, uint32_t BitrateBps, uint16_t SamplePointPermille>
 struct ComputedBitTiming {
   static constexpr BitTiming value = compute_bit_timing(OscHz, BitrateBps, SamplePointPermille);
-  static_assert(is_valid(value), "no bit timing gives this bit rate with this oscillator");
+  static_assert(is_valid(value),
+                "no bit timing comes within 0.5 % of this bit rate with this oscillator");
 };
 
 }  // namespace detail

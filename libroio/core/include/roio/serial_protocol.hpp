@@ -11,7 +11,7 @@
 namespace roio {
 namespace serial {
 
-constexpr uint8_t protocol_version = 1;
+constexpr uint8_t protocol_version = 2;
 constexpr uint32_t no_session = 0;
 constexpr uint8_t window = 16;    ///< Frames down whose outcome is not known yet.
 constexpr uint8_t max_rules = 6;  ///< Of FILTER.
@@ -99,11 +99,34 @@ inline uint32_t get32(const uint8_t* bytes) {
   return (static_cast<uint32_t>(get16(bytes)) << 16) | get16(bytes + 2);
 }
 
+// --- life ----------------------------------------------------------------------------------------
+
+//  7..4   3..0
+//  shift  base     base << shift: for so long a frame may wait from when the bridge takes it
+constexpr uint8_t life_forever = 0xFF;
+constexpr uint16_t life_unit_us = 256 * ticks_us;
+constexpr uint8_t longest_life = 0xBF;  ///< 31 s; what a bridge's clock tells from the past.
+
+/// @param life at most longest_life. @return in units of life_unit_us: 0..30720.
+constexpr uint16_t life_units(uint8_t life) {
+  return static_cast<uint16_t>((life & 0x0FU) << (life >> 4));
+}
+/// The longest that is not longer than so many units: less than a ninth shorter.
+inline uint8_t life_of_units(uint32_t units) {
+  uint8_t shift = 0;
+  for (; units > 0x0FU; units >>= 1) {
+    ++shift;
+  }
+  const uint8_t life = static_cast<uint8_t>((shift << 4) | units);
+  return shift > longest_life >> 4 ? longest_life : life;
+}
+
 // --- frames --------------------------------------------------------------------------------------
 
-constexpr uint8_t frame_head_down = 5;  ///< Tag and sequence.
-constexpr uint8_t frame_head_up = 7;    ///< And time.
+constexpr uint8_t frame_head_down = 6;  ///< Tag, sequence and life.
+constexpr uint8_t frame_head_up = 7;    ///< Tag, sequence and time.
 constexpr uint8_t sequence_at = 4;
+constexpr uint8_t life_at = 5;
 constexpr uint8_t time_at = 5;
 
 /// What comes after the head: a remote frame has a length in place of data.
@@ -120,9 +143,10 @@ void put_payload(Writer& writer, FrameKind kind, uint8_t length, const uint8_t* 
 
 /// @param frame is_valid(), and no error report.
 template <typename Writer>
-void put_frame_down(Writer& writer, const Frame& frame, uint8_t sequence) {
+void put_frame_down(Writer& writer, const Frame& frame, uint8_t sequence, uint8_t life) {
   writer.put32(tagged_id(frame));
   writer.put(sequence);
+  writer.put(life);
   put_payload(writer, frame.kind, frame.length, frame.data);
 }
 

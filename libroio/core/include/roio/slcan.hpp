@@ -10,6 +10,7 @@
 
 #include <stdint.h>
 
+#include <roio/bit_timing.hpp>
 #include <roio/frame.hpp>
 
 namespace roio {
@@ -105,7 +106,8 @@ struct Command {
     open,           ///< O
     listen,         ///< L: open, listen only.
     close,          ///< C
-    bitrate,        ///< S0..S8: bitrate_bps. Only while closed.
+    bitrate,        ///< S0..S9, s: bitrate_bps, or none: `error`, and nothing opens before another
+                    ///< is accepted. Only while closed.
     frame,          ///< t, T, r, R: frame. Only while open, and not in listen only. taken(), `ok`.
     flags,          ///< F: format_flags().
     version,        ///< V: format_about().
@@ -115,8 +117,9 @@ struct Command {
     no_change,      ///< X1, M00000000, mFFFFFFFF: frames unasked, all of them, as always: `ok`.
   };
   Kind kind;
-  uint32_t bitrate_bps;  ///< Of a bitrate.
-  Frame frame;           ///< Of a frame: is_valid(), and no error report.
+  uint32_t bitrate_bps;            ///< Of a bitrate; 0: there is no such.
+  uint16_t sample_point_permille;  ///< Of a bitrate.
+  Frame frame;                     ///< Of a frame: is_valid(), and no error report.
 };
 
 /// The first character of the answer to a frame that was taken; `ok` is the second and last.
@@ -211,6 +214,24 @@ constexpr uint8_t standard_bitrate(char digit) {
          : digit == '8' ? 200
                         : 0;
 }
+/// S9 is none of LAWICEL's, but what python-can sends for 83,300 bit/s.
+constexpr uint32_t bitrate_of(char digit) {
+  return digit == '9' ? UINT32_C(83333) : standard_bitrate(digit) * UINT32_C(5000);
+}
+
+//  7..6      5..0        7        6..4       3..0
+//  jump - 1  prescaler-1 triple   seg2 - 1   seg1 - 1     BTR0, BTR1 of an SJA1000 at 16 MHz
+/// Rate and sample point are what has to agree with the other nodes; how an MCP2515 comes to them
+/// is for its own crystal to say.
+inline void read_registers(uint8_t btr0, uint8_t btr1, uint32_t& bitrate_bps,
+                           uint16_t& sample_point_permille) {
+  constexpr uint32_t clock_hz = 8000000;  // half of its crystal's
+  const uint16_t before = static_cast<uint16_t>(2U + (btr1 & 0x0FU));
+  const uint16_t quanta = static_cast<uint16_t>(before + 1U + ((btr1 >> 4) & 7U));
+  const uint16_t prescaler = static_cast<uint16_t>((btr0 & 0x3FU) + 1U);
+  bitrate_bps = clock_hz / (prescaler * quanta);
+  sample_point_permille = static_cast<uint16_t>(before * 1000U / quanta);
+}
 
 /// Of a command that is one letter.
 constexpr Command::Kind letter_kind(char letter) {
@@ -223,7 +244,7 @@ constexpr Command::Kind letter_kind(char letter) {
                          : Command::Kind::bad;
 }
 
-/// Of one that is a letter and a digit, but for S.
+/// Of one that is a letter and a digit.
 constexpr Command::Kind setting_kind(char letter, char digit) {
   return letter == 'Z' && digit == '0'   ? Command::Kind::times_off
          : letter == 'Z' && digit == '1' ? Command::Kind::times_on
@@ -233,23 +254,42 @@ constexpr Command::Kind setting_kind(char letter, char digit) {
 
 }  // namespace detail
 
+namespace detail {
+
+/// S or s, whatever comes after it: a rate that was asked for and is none is told from no command.
+/// @param text of which are_digits() is true from the second on.
+inline void read_bitrate(const char* text, uint8_t length, Command& command) {
+  command.kind = Command::Kind::bitrate;
+  if (text[0] == 'S' && length == 1 + 1) {
+    command.bitrate_bps = bitrate_of(text[1]);
+    command.sample_point_permille = default_sample_point_permille(command.bitrate_bps);
+  } else if (text[0] == 's' && length == 1 + 4) {
+    read_registers(static_cast<uint8_t>(number(text + 1, 2)),
+                   static_cast<uint8_t>(number(text + 3, 2)), command.bitrate_bps,
+                   command.sample_point_permille);
+  }
+}
+
+}  // namespace detail
+
 /// @param text need not end with a zero, and is read no further than `length`.
 inline Command parse(const char* text, uint8_t length) {
-  Command command = {Command::Kind::bad, 0, {0, FrameKind::standard, 0, {}}};
+  Command command = {Command::Kind::bad, 0, 0, {0, FrameKind::standard, 0, {}}};
   const char letter = length == 0 ? '\0' : text[0];
+  const bool has_digits =
+      length > 1 && detail::are_digits(text + 1, static_cast<uint8_t>(length - 1));
   if (length == 0) {
     command.kind = Command::Kind::empty;
+  } else if ((letter | detail::lower_case) == 's') {
+    detail::read_bitrate(text, has_digits ? length : uint8_t{1}, command);
   } else if (length == 1) {
     command.kind = detail::letter_kind(letter);
-  } else if (!detail::are_digits(text + 1, static_cast<uint8_t>(length - 1))) {
+  } else if (!has_digits) {
     command.kind = Command::Kind::bad;
   } else if (detail::is_frame_letter(letter)) {
     if (detail::read_frame(text, length, command.frame)) {
       command.kind = Command::Kind::frame;
     }
-  } else if (length == 2 && letter == 'S') {
-    command.bitrate_bps = detail::standard_bitrate(text[1]) * UINT32_C(5000);
-    command.kind = command.bitrate_bps != 0 ? Command::Kind::bitrate : Command::Kind::bad;
   } else if (length == 2) {
     command.kind = detail::setting_kind(letter, text[1]);
   } else if (length == 1 + 8 && detail::lets_all_pass(text)) {

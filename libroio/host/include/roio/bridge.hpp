@@ -63,7 +63,8 @@ struct BridgeInfo {
   FirmwareVersion firmware;
   BridgeBoard board = BridgeBoard::other;
   std::uint16_t osc_khz = 0;  ///< Of the controller's crystal, as measured; 0: no controller yet.
-  std::uint32_t bitrate_bps = 0;
+  std::uint32_t bitrate_bps = 0;       ///< As it was set.
+  std::uint32_t real_bitrate_bps = 0;  ///< What the crystal makes of it, rounded down; 0: unknown.
   BridgeMode mode = BridgeMode::normal;
   std::optional<Address> address;   ///< Of the board as a node; none: it is no node.
   bool interrupt_wired = false;     ///< The controller's INT line; without it the bridge is slower.
@@ -101,8 +102,11 @@ struct BridgeLineCounters {
   std::uint64_t step_downs = 0;     ///< Times that the rate was lowered for damaged records.
   std::uint64_t sent = 0;           ///< Frames to the bridge: sent and acknowledged on the bus,
   std::uint64_t not_sent = 0;       ///< given up by it,
-  std::uint64_t unknown = 0;        ///< and such of which nobody can tell (a session or the
-                                    ///< controller was lost). The last two are Statistics::unsent.
+  std::uint64_t unknown = 0;        ///< such of which nobody can tell (a session or the controller
+                                    ///< was lost),
+  std::uint64_t dropped = 0;        ///< and such that came to their end before the bridge had room.
+                                    ///< The last three are Statistics::unsent.
+  std::uint64_t unsettled = 0;      ///< Of which it is not known yet, now.
 };
 
 class ROIO_EXPORT Bridge {

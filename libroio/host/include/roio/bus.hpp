@@ -110,6 +110,11 @@ struct OpenOptions {
   /// How long open() may wait for the bus (a local bus whose first program is just starting or
   /// leaving, a board that is reset when its port is opened).
   Timeout open_timeout = std::chrono::seconds(5);
+  /// A bridge: how long a frame that send() has accepted may be on its way. It is on the bus by
+  /// then (less a ninth at most), or never, whatever becomes of this program, the line and the bus
+  /// meanwhile, and counted as Statistics::unsent. Less than some milliseconds is less than the
+  /// line takes. A bridge gives up after 31 s at the latest, unless this is forever.
+  Timeout lifetime = std::chrono::seconds(1);
   /// Of a local bus. Other kinds take no notice.
   Carry carry = Carry::if_needed;
   /// Frames go out exactly in the order in which send() is given them: an urgent one waits until

@@ -39,15 +39,6 @@ constexpr milliseconds retry_interval{100};  // to open the port again
 constexpr milliseconds filter_time{1000};
 constexpr std::size_t receive_capacity = 16384;
 
-SerialSettings settings_of(const BusUrl& url, std::vector<serial::Rule> rules, bool in_order) {
-  SerialSettings settings{.in_order = in_order};
-  settings.line_rate_bps = url.baud.value_or(settings.line_rate_bps);
-  settings.bitrate_bps = url.bitrate;
-  settings.mode = url.mode;
-  settings.rules = std::move(rules);
-  return settings;
-}
-
 /// What a condition variable can wait for.
 Timeout bounded(Timeout timeout) {
   return std::clamp<Timeout>(timeout, no_wait, std::chrono::hours(1));
@@ -62,7 +53,7 @@ class SerialBus final : public Bus, public Bridge {
         path_(std::move(path)),
         error_frames_(options.error_frames),
         filters_(!options.send_only),
-        session_(settings_of(url, filters_.rules(), options.in_order), random_nonce),
+        session_(settings_of(url, options, filters_.rules()), random_nonce),
         port_(std::in_place, path_, name_, base_rate_bps) {
     session_.begin(steady_now());
     flush();
@@ -304,6 +295,11 @@ void SerialBus::reopen() {
   if (::poll(&entry, 1, static_cast<int>(retry_interval.count())) != 0) {
     return;
   }
+  {
+    const std::lock_guard lock(mutex_);
+    session_.on_time(steady_now());  // frames that wait come to their end
+    follow_session();
+  }
   try {
     SerialPort port(path_, name_, base_rate_bps);
     const std::lock_guard lock(mutex_);
@@ -374,8 +370,9 @@ BridgeLineCounters SerialBus::line_counters() const {
   const std::lock_guard lock(mutex_);
   const SerialSession::Counters& line = session_.counters();
   const DownFrames::Counters& down = session_.down();
-  return {line.sessions,      line.damaged,    session_.lost(), down.resent,   line.retries,
-          line.failed_trials, line.step_downs, down.sent,       down.not_sent, down.unknown};
+  return {line.sessions, line.damaged,       session_.lost(), down.resent,
+          line.retries,  line.failed_trials, line.step_downs, down.sent,
+          down.not_sent, down.unknown,       down.dropped,    session_.unsettled()};
 }
 
 BridgeCounters SerialBus::counters(Timeout timeout) {

@@ -18,7 +18,7 @@ Outcome outcome_of(std::uint32_t slots, std::size_t slot) {
 
 }  // namespace
 
-std::size_t DownFrames::offer(std::span<const Frame> frames) {
+std::size_t DownFrames::offer(std::span<const Frame> frames, Time end) {
   std::size_t count = 0;
   for (const Frame& frame : frames) {
     const std::size_t lane = lane_in_driver(frame);
@@ -26,7 +26,7 @@ std::size_t DownFrames::offer(std::span<const Frame> frames) {
       break;
     }
     order_.accepted(lane);
-    lanes_.at(lane).push_back(frame);
+    lanes_.at(lane).push_back({frame, end});
     ++count;
   }
   return count;
@@ -48,7 +48,23 @@ void DownFrames::drop_waiting() {
   }
 }
 
-std::deque<Frame>* DownFrames::waiting_lane() {
+void DownFrames::drop_expired(Time now) {
+  for (auto& lane : lanes_) {
+    for (; !lane.empty() && now >= lane.front().end; lane.pop_front()) {
+      ++counters_.dropped;
+    }
+  }
+}
+
+Time DownFrames::next_end() const {
+  Time end = Time::max();
+  for (const auto& lane : lanes_) {
+    end = lane.empty() ? end : std::min(end, lane.front().end);
+  }
+  return end;
+}
+
+DownFrames::Lane* DownFrames::waiting_lane() {
   const auto lane =
       std::find_if(lanes_.begin(), lanes_.end(), [](const auto& one) { return !one.empty(); });
   return lane == lanes_.end() ? nullptr : &*lane;
@@ -70,16 +86,16 @@ std::optional<DownFrames::Numbered> DownFrames::next() {
   if (cursor_ < assigned_) {
     ++counters_.resent;
   } else {
-    std::deque<Frame>* const lane = waiting_lane();
+    Lane* const lane = waiting_lane();
     if (slot.pending || lane == nullptr) {
       return std::nullopt;
     }
-    slot = {lane->front(), true};
+    slot = {lane->front().frame, lane->front().end, true};
     lane->pop_front();
     ++pending_;
     ++assigned_;
   }
-  return Numbered{slot.frame, static_cast<std::uint8_t>(cursor_++)};
+  return Numbered{slot.frame, static_cast<std::uint8_t>(cursor_++), slot.end};
 }
 
 DownFrames::Progress DownFrames::results(std::uint8_t next, std::uint32_t slots) {

@@ -11,22 +11,26 @@
 #include <roio/serial_protocol.hpp>
 #include <span>
 
+#include "serial/clock.hpp"
+
 namespace roio::serial {
 
 /// Frames on their way to the bridge: they wait in two lanes until there is room in the window;
-/// there each has a number, and stays until its outcome is known.
+/// there each has a number, and stays until its outcome is known. Each has an end, after which it
+/// is not to be on the bus any more: until it has a number that is seen to here, then by the
+/// bridge, which its record tells.
 class DownFrames {
  public:
   static constexpr std::size_t lane_capacity = 64;
   /// Bytes that are sent before RESULTS says that some were taken: a bridge that is busy with its
   /// controller lets them wait in a buffer of 255 bytes, POLL and other records among them.
-  static constexpr std::size_t max_untaken = 170;
+  static constexpr std::size_t max_untaken = 180;
 
   struct Counters {
     std::uint64_t sent = 0;      ///< On the bus, and acknowledged.
     std::uint64_t not_sent = 0;  ///< Given up by the bridge.
     std::uint64_t unknown = 0;   ///< Their session or the controller was lost.
-    std::uint64_t dropped = 0;   ///< Were never handed to the bridge.
+    std::uint64_t dropped = 0;   ///< Were never handed to the bridge, mostly for their end.
     std::uint64_t resent = 0;    ///< Records sent again.
   };
 
@@ -34,17 +38,23 @@ class DownFrames {
   explicit DownFrames(bool in_order = false) : order_(in_order) {}
 
   /// Accepts frames as long as their lanes have room, and it is their turn.
+  /// @param end not before that of those that wait. Time::max(): none.
   /// @return how many: up to the first for which that is not so.
-  std::size_t offer(std::span<const Frame> frames);
+  std::size_t offer(std::span<const Frame> frames, Time end);
 
   /// Another session: what has a number is unknown from now on, what waits goes on waiting.
   void begin();
   /// Drops what waits.
   void drop_waiting();
+  /// Drops what has waited until its end.
+  void drop_expired(Time now);
+  /// When drop_expired() has something to do; Time::max(): never.
+  [[nodiscard]] Time next_end() const;
 
   struct Numbered {
     const Frame& frame;
     std::uint8_t sequence;
+    Time end;
   };
   /// The next frame to be sent, if there is one, and the window and the bridge's buffer have room.
   std::optional<Numbered> next();
@@ -65,22 +75,31 @@ class DownFrames {
   /// Whether the outcome of any frame with a number is still to come.
   [[nodiscard]] bool awaits_outcome() const { return pending_ > 0; }
   [[nodiscard]] std::size_t waiting() const { return lanes_[0].size() + lanes_[1].size(); }
+  /// How many wait, or have an outcome to come.
+  [[nodiscard]] std::size_t unsettled() const { return pending_ + waiting(); }
   /// Whether nothing waits and all outcomes are known.
-  [[nodiscard]] bool done() const { return pending_ == 0 && waiting() == 0; }
+  [[nodiscard]] bool done() const { return unsettled() == 0; }
+  /// Bytes of records that were sent and are not taken yet.
+  [[nodiscard]] std::size_t untaken() const;
   [[nodiscard]] const Counters& counters() const { return counters_; }
 
  private:
+  struct Waiting {
+    Frame frame;
+    Time end;
+  };
   struct Slot {
     Frame frame{};
+    Time end{0};
     bool pending = false;
   };
+  using Lane = std::deque<Waiting>;
   static std::size_t slot_of(std::uint64_t number) { return number % window; }
 
-  [[nodiscard]] std::size_t untaken() const;
   bool settle(Slot& slot, Outcome outcome);
-  std::deque<Frame>* waiting_lane();
+  Lane* waiting_lane();
 
-  std::array<std::deque<Frame>, lane_count> lanes_;
+  std::array<Lane, lane_count> lanes_;
   LaneOrder order_;
   std::array<Slot, window> slots_;
   std::size_t pending_ = 0;     // of slots_

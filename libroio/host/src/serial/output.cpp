@@ -62,8 +62,9 @@ void Output::put_numbered(std::uint32_t session, Down operation, std::uint8_t se
   put_control(session, operation, sequence, numbered);
 }
 
-void Output::put_frame(std::uint32_t session, const Frame& frame, std::uint8_t sequence) {
-  put(session, [&](auto& writer) { put_frame_down(writer, frame, sequence); });
+void Output::put_frame(std::uint32_t session, const Frame& frame, std::uint8_t sequence,
+                       std::uint8_t life) {
+  put(session, [&](auto& writer) { put_frame_down(writer, frame, sequence, life); });
 }
 
 bool hello_is_harmful(std::uint32_t session) {

@@ -31,7 +31,8 @@ class Output {
   /// What is answered by REPLY.
   void put_numbered(std::uint32_t session, Down operation, std::uint8_t sequence,
                     std::uint8_t number, std::span<const std::uint8_t> payload);
-  void put_frame(std::uint32_t session, const Frame& frame, std::uint8_t sequence);
+  void put_frame(std::uint32_t session, const Frame& frame, std::uint8_t sequence,
+                 std::uint8_t life);
 
  private:
   // As much may wait for the port; then it does not take any, and nothing is added.

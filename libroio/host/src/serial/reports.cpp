@@ -1,6 +1,7 @@
 #include "serial/reports.hpp"
 
 #include <array>
+#include <roio/bit_timing.hpp>
 
 namespace roio::serial {
 namespace {
@@ -53,6 +54,11 @@ std::optional<Welcome> read_welcome(std::span<const std::uint8_t> payload) {
   info.state = BridgeState::absent;
   return Welcome{get32(&payload[session_at]), get32(&payload[previous_session_at]),
                  get32(&payload[previous_due_at]), info, payload[rates_at]};
+}
+
+std::uint32_t real_bitrate_bps(const BridgeInfo& info) {
+  const std::uint32_t osc_hz = info.osc_khz * 1000U;
+  return bitrate_bps(compute_bit_timing(osc_hz, info.bitrate_bps), osc_hz);
 }
 
 std::optional<FirmwareVersion> firmware_of(std::span<const std::uint8_t> payload) {

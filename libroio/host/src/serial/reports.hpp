@@ -12,7 +12,7 @@
 
 namespace roio::serial {
 
-/// WELCOME of protocol version 1.
+/// WELCOME of this protocol version.
 struct Welcome {
   std::uint32_t session;
   std::uint32_t previous_session;
@@ -22,6 +22,8 @@ struct Welcome {
 };
 /// @param payload behind the control head. @return none: it makes no sense.
 std::optional<Welcome> read_welcome(std::span<const std::uint8_t> payload);
+/// What its crystal makes of its bit rate: the bridge computes its timing alike. 0: no crystal.
+std::uint32_t real_bitrate_bps(const BridgeInfo& info);
 /// Of a WELCOME of another version, if it says so where version 1 does.
 std::optional<FirmwareVersion> firmware_of(std::span<const std::uint8_t> payload);
 

@@ -123,6 +123,11 @@ void SerialSession::go_on(Time now) {
 }
 
 Time SerialSession::deadline() const {
+  return std::min(course_deadline(), down_.next_end());
+}
+
+/// But for frames that wait.
+Time SerialSession::course_deadline() const {
   switch (phase_) {
     case Phase::closed:
       return Time::max();
@@ -140,7 +145,8 @@ Time SerialSession::deadline() const {
 }
 
 void SerialSession::on_time(Time now) {
-  if (phase_ == Phase::closed || now < deadline()) {
+  down_.drop_expired(now);
+  if (now < course_deadline()) {
     return;
   }
   if (phase_ == Phase::calling) {
@@ -320,7 +326,9 @@ std::size_t SerialSession::offer(std::span<const Frame> frames, Time now) {
   if (phase_ != Phase::ready) {
     return 0;
   }
-  const std::size_t count = down_.offer(frames);
+  down_.drop_expired(now);
+  const bool has_end = settings_.lifetime < Time::max() - now;
+  const std::size_t count = down_.offer(frames, has_end ? now + settings_.lifetime : Time::max());
   send_frames(now);
   return count;
 }
@@ -328,12 +336,26 @@ std::size_t SerialSession::offer(std::span<const Frame> frames, Time now) {
 void SerialSession::send_frames(Time now) {
   while (phase_ == Phase::ready && !output_.is_clogged()) {
     results_.look(down_, now);
+    down_.drop_expired(now);
     const auto next = down_.next();
     if (!next) {
       return;
     }
-    output_.put_frame(session_, next->frame, next->sequence);
+    output_.put_frame(session_, next->frame, next->sequence, life_until(next->end, now));
   }
+}
+
+/// How long it may wait from when the bridge takes it, after what is on the line before it.
+std::uint8_t SerialSession::life_until(Time end, Time now) const {
+  constexpr unsigned byte_bits = 10;
+  if (end == Time::max()) {
+    return life_forever;
+  }
+  const Time on_line = std::chrono::seconds(down_.untaken() * byte_bits) / line_rate_bps();
+  const auto left = (end - now - on_line) / std::chrono::microseconds(life_unit_us);
+  return left <= 0
+             ? std::uint8_t{0}
+             : life_of_units(static_cast<std::uint32_t>(std::min<std::int64_t>(left, UINT32_MAX)));
 }
 
 void SerialSession::check_progress(Time now) {
@@ -370,6 +392,7 @@ void SerialSession::poll(Time now) {
 BridgeInfo SerialSession::info() const {
   BridgeInfo info = bridge_.info();
   info.line_rate_bps = line_rate_bps();
+  info.real_bitrate_bps = real_bitrate_bps(info);
   if (!in_session()) {
     info.state = BridgeState::absent;
   }

@@ -103,6 +103,8 @@ class SerialSession {
   void drop_waiting() { down_.drop_waiting(); }
   /// How many wait for room in the window.
   [[nodiscard]] std::size_t waiting() const { return down_.waiting(); }
+  /// How many have no outcome yet.
+  [[nodiscard]] std::size_t unsettled() const { return down_.unsettled(); }
   /// Whether the outcome of all frames offered is known.
   [[nodiscard]] bool all_done() const { return down_.done(); }
   [[nodiscard]] const serial::DownFrames::Counters& down() const { return down_.counters(); }
@@ -159,8 +161,10 @@ class SerialSession {
   void say_hello(Time now);
   void poll(Time now);
   void send_frames(Time now);
+  [[nodiscard]] std::uint8_t life_until(Time end, Time now) const;
 
   // The course of a session.
+  [[nodiscard]] Time course_deadline() const;
   [[nodiscard]] bool in_session() const { return phase_ > Phase::calling; }
   [[nodiscard]] bool is_settled() const { return phase_ == Phase::ready && !requests_.under_way(); }
   void call(Time now);
