@@ -1,7 +1,5 @@
 // What another program's event loop needs: everything that a call could wait for is told by
 // event_fd() and take_events(), once, and nothing else is.
-#include <poll.h>
-
 #include <algorithm>
 #include <array>
 #include <atomic>
@@ -10,63 +8,12 @@
 #include <thread>
 
 #include "contract.hpp"
-
-namespace roio {
-
-bool operator==(const Events& a, const Events& b) {
-  return a.room == b.room && a.state == b.state && a.loss == b.loss && a.filters == b.filters &&
-         a.reply == b.reply && a.closed == b.closed;
-}
-
-std::ostream& operator<<(std::ostream& out, const Events& events) {
-  const auto name = [&out](bool is_told, const char* text) { out << (is_told ? text : ""); };
-  name(!events.any(), "nothing");
-  name(events.room, "room ");
-  name(events.state, "state ");
-  name(events.loss, "loss ");
-  name(events.filters, "filters ");
-  name(events.reply, "reply ");
-  name(events.closed, "closed ");
-  return out;
-}
-
-}  // namespace roio
+#include "event_loop.hpp"
 
 namespace roio::test {
 namespace {
 
 ROIO_CONTRACT(EventLoop);
-
-bool has_events(const Bus& bus, std::chrono::milliseconds timeout = std::chrono::milliseconds(0)) {
-  pollfd entry{bus.event_fd(), POLLIN, 0};
-  return ::poll(&entry, 1, static_cast<int>(timeout.count())) == 1;
-}
-
-/// As an event loop does: sleeps until something is told.
-Events next_events(Bus& bus) {
-  const auto end = std::chrono::steady_clock::now() + guard;
-  for (;;) {
-    if (!has_events(bus, guard)) {
-      ADD_FAILURE() << "no event";
-      return {};
-    }
-    if (const Events events = bus.take_events(); events.any()) {
-      return events;
-    }
-    if (std::chrono::steady_clock::now() > end) {
-      ADD_FAILURE() << "event_fd() is readable, and there is nothing";
-      return {};
-    }
-  }
-}
-
-/// Nothing is told, and a loop would sleep. News of other interfaces may wake it for nothing.
-void expect_no_events(Bus& bus) {
-  if (has_events(bus, moment)) {
-    EXPECT_EQ(bus.take_events(), Events{});
-  }
-  EXPECT_FALSE(has_events(bus)) << "it spins";
-}
 
 TEST_P(EventLoop, NothingIsToldWhereNothingHappens) {
   const auto a = join();

@@ -133,7 +133,8 @@ std::optional<std::size_t> LocalBus::offer(std::span<const Frame> frames) {
     ask_for_done();
     asked = true;
   }
-  if (count < frames.size() && !link_) {
+  sender_waits_ = count < frames.size();
+  if (sender_waits_ && !link_) {
     events_.clear_room();
   }
   statistics_.sent += count;
@@ -303,7 +304,8 @@ void LocalBus::work() {
   inbox_.stay_awake();
   inbox_.fetch();
   settle();
-  if (closing_ && outbox_.size() > 0) {
+  // The hub may have answered the last time with what was known already.
+  if (sender_waits_ || (closing_ && outbox_.size() > 0)) {
     ask_for_done();
   }
   if (link_) {
@@ -312,7 +314,7 @@ void LocalBus::work() {
     tell_if_waited_for();
   }
   if (std::exchange(settled_seen_, outbox_.settled()) != outbox_.settled()) {
-    events_.set_room();
+    make_room();
   }
   look_for_events();
 }
@@ -366,9 +368,15 @@ void LocalBus::adopt(Connection connection) {
   if (outbox_.size() > 0) {
     watch_.begin(outbox_.settled());
   }
-  events_.set_room();
+  make_room();
   look_for_events();
   changed_.notify_all();
+}
+
+void LocalBus::make_room() {
+  if (std::exchange(sender_waits_, false)) {
+    events_.set_room();
+  }
 }
 
 }  // namespace local

@@ -70,6 +70,7 @@ class LocalBus final : public Bus {
   void ask_for_done();
   void flush();
   void tell_if_waited_for();
+  void make_room();
   void look_for_events();
   [[nodiscard]] bool is_over() const;
 
@@ -98,6 +99,7 @@ class LocalBus final : public Bus {
   std::optional<std::system_error> trouble_;
   Inbox inbox_;
   Outbox outbox_;
+  bool sender_waits_ = false;       // for room
   std::uint64_t settled_seen_ = 0;  // by the reading thread
   CarrierWatch watch_;
   std::optional<Deadline> closing_;
