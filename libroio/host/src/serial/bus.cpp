@@ -289,6 +289,10 @@ void SerialBus::reopen() {
     port_.emplace(std::move(port));
     session_.begin(steady_now());
     flush();
+    // Finding it may have taken all the time.
+    open_until_ = Deadline(std::max<Timeout>(open_until_.remaining(), least_open_time));
+    trouble_.reset();
+    look_for_events();
   } catch (const std::system_error& error) {
     // Not plugged in yet, or somebody else has it: state() says absent.
     const std::lock_guard lock(mutex_);

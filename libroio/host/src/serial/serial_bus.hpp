@@ -120,8 +120,8 @@ class SerialBus final : public Bus, public Bridge {
 
   const std::string name_;
   const bool error_frames_;
-  const Deadline open_until_;
-  PortOpener opener_;  // the serving thread's
+  Deadline open_until_;  // the serving thread's: after it, that no bridge answers is a trouble
+  PortOpener opener_;    // the serving thread's
   BusEvents events_;
   EventFlag stop_;  // to look for a port
   EventFlag wake_;  // the serving thread is to look at the session
