@@ -10,7 +10,7 @@ function(roio_add_contract_test name)
   include(GoogleTest)
   # The suite is compiled once, whoever takes it.
   if(NOT TARGET roio_contract)
-    set(parts contract filter_test flow_test frame_test node_test order_test wait_test)
+    set(parts contract event_test filter_test flow_test frame_test node_test order_test wait_test)
     list(TRANSFORM parts PREPEND ${roio_contract_dir}/)
     list(TRANSFORM parts APPEND .cpp)
     add_library(roio_contract OBJECT ${parts})

@@ -19,5 +19,6 @@ std::vector<roio::test::Backend> roio::test::backends() {
            .paced = false,
            .one_order = true,
            .refills_fast = true,
+           .there_at_once = true,
            .flood = 50'000}};
 }

@@ -50,7 +50,7 @@ class MemoryBus final : public roio::Bus {
   roio::Transfer send(std::span<const roio::Frame> frames, roio::Timeout timeout) override {
     roio::check_sendable(frames);
     return roio::send_queued(
-        waits_, sendable_, frames, timeout,
+        waits_, events_, frames, timeout,
         [this](std::span<const roio::Frame> rest) { return deliver(rest); },
         [this](bool gives_up) {
           const std::lock_guard lock(wire_->mutex);
@@ -70,8 +70,14 @@ class MemoryBus final : public roio::Bus {
     const std::lock_guard lock(wire_->mutex);
     filters_.assign(filters.begin(), filters.end());
   }
+  void begin_set_filters(std::span<const roio::SocketCanFilter> filters) override {
+    set_filters(filters);
+    events_.tell(&roio::Events::filters);
+  }
 
   int fd() const noexcept override { return queue_.readable().fd(); }
+  int event_fd() const noexcept override { return events_.fd(); }
+  roio::Events take_events() override { return events_.take(); }
   roio::BusState state() const override {
     return waits_.is_closed() ? roio::BusState::absent : roio::BusState::active;
   }
@@ -84,10 +90,14 @@ class MemoryBus final : public roio::Bus {
   void cancel() noexcept override { waits_.cancel(); }
   void resume() noexcept override { waits_.resume(); }
   void close() noexcept override {
-    waits_.close();
     const std::lock_guard lock(wire_->mutex);
-    std::erase(wire_->participants, this);
+    if (!waits_.is_closed()) {
+      waits_.close();
+      std::erase(wire_->participants, this);
+      events_.tell(&roio::Events::closed);
+    }
   }
+  void begin_close() noexcept override { close(); }
   const std::string& name() const noexcept override { return wire_->name; }
 
  private:
@@ -102,6 +112,7 @@ class MemoryBus final : public roio::Bus {
       for (MemoryBus* const other : wire_->participants) {
         if (other != this && other->wants(frame)) {
           other->queue_.put(frame, now);
+          other->look_for_events();
         }
       }
     }
@@ -114,6 +125,12 @@ class MemoryBus final : public roio::Bus {
     return waits_.is_closed() ? std::nullopt : std::optional(queue_.take(room));
   }
 
+  void look_for_events() {
+    roio::Statistics statistics;
+    queue_.add_to(statistics);
+    events_.look(roio::BusState::active, statistics.dropped);
+  }
+
   bool wants(const roio::Frame& frame) const {
     const std::uint32_t tagged = roio::tagged_id(frame);
     return std::ranges::any_of(
@@ -122,7 +139,7 @@ class MemoryBus final : public roio::Bus {
 
   const std::shared_ptr<MemoryWire> wire_;
   roio::Waits waits_;
-  roio::EventFlag sendable_;  // never waited for: all that is offered goes at once
+  roio::BusEvents events_;  // never of room: all that is offered goes at once
 
   // Under the wire's lock.
   std::vector<roio::SocketCanFilter> filters_;

@@ -14,9 +14,10 @@ constexpr int max_late_batches = 16;
 
 }  // namespace
 
-Node::Node(std::unique_ptr<Bus> bus, Address own) : Node(std::move(bus), interest_of(own)) {}
+Node::Node(std::unique_ptr<Bus> bus, Address own, const NodeOptions& options)
+    : Node(std::move(bus), interest_of(own), options) {}
 
-Node::Node(std::unique_ptr<Bus> bus, const Interest& interest)
+Node::Node(std::unique_ptr<Bus> bus, const Interest& interest, const NodeOptions& options)
     : bus_(std::move(bus)), interest_(interest), batch_() {
   if (!bus_) {
     throw std::invalid_argument("Node: no bus given");
@@ -27,7 +28,11 @@ Node::Node(std::unique_ptr<Bus> bus, const Interest& interest)
   }
   std::vector<SocketCanFilter> filters(program_.size());
   std::transform(program_.begin(), program_.end(), filters.begin(), to_socketcan);
-  bus_->set_filters(filters);
+  if (options.background) {
+    bus_->begin_set_filters(filters);
+  } else {
+    bus_->set_filters(filters);
+  }
 }
 
 Result Node::send(Address destination, std::span<const std::uint8_t> data, Priority priority,

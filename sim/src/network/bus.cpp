@@ -18,10 +18,11 @@ class NetworkBus final : public Bus {
   NetworkBus(std::shared_ptr<NetworkCore> core, const OpenOptions& options)
       : core_(std::move(core)), exchange_(std::make_shared<Exchange>(options)) {
     const Deadline deadline(options.open_timeout);
+    bool joined = false;
     do {
-      core_->call([this] { station_ = core_->add(exchange_); });
-    } while (station_ == nullptr && !deadline.passed());
-    if (station_ == nullptr) {
+      core_->call([this, &joined] { joined = core_->add(exchange_); });
+    } while (!joined && !deadline.passed());
+    if (!joined) {
       throw std::system_error(Errc::not_connected, name());
     }
   }
@@ -35,25 +36,28 @@ class NetworkBus final : public Bus {
   Transfer send(std::span<const Frame> frames, Timeout timeout) override;
   Transfer receive(std::span<Received> frames, Timeout timeout) override;
   void set_filters(std::span<const SocketCanFilter> filters) override;
+  void begin_set_filters(std::span<const SocketCanFilter> filters) override;
   [[nodiscard]] int fd() const noexcept override { return exchange_->readable().fd(); }
+  [[nodiscard]] int event_fd() const noexcept override { return exchange_->events().fd(); }
+  Events take_events() override { return exchange_->events().take(); }
   [[nodiscard]] BusState state() const override { return exchange_->state(); }
   [[nodiscard]] Statistics statistics() const override { return exchange_->statistics(); }
   void cancel() noexcept override { waits_.cancel(); }
   void resume() noexcept override { waits_.resume(); }
   void close() noexcept override;
+  void begin_close() noexcept override;
   [[nodiscard]] const std::string& name() const noexcept override { return core_->options().name; }
 
  private:
   std::shared_ptr<NetworkCore> core_;
   std::shared_ptr<Exchange> exchange_;
-  Station* station_ = nullptr;  // the core's, and for its thread only
   Waits waits_;
 };
 
 Transfer NetworkBus::send(std::span<const Frame> frames, Timeout timeout) {
   check_sendable(frames);
   return send_queued(
-      waits_, exchange_->sendable(), frames, timeout,
+      waits_, exchange_->events(), frames, timeout,
       [this](std::span<const Frame> rest) -> std::optional<std::size_t> {
         if (waits_.is_closed()) {
           return std::nullopt;
@@ -88,14 +92,21 @@ void NetworkBus::set_filters(std::span<const SocketCanFilter> filters) {
   exchange_->set_filters(filters);
 }
 
-void NetworkBus::close() noexcept {
-  if (waits_.is_closed()) {
-    return;
-  }
+void NetworkBus::begin_set_filters(std::span<const SocketCanFilter> filters) {
+  set_filters(filters);
+  exchange_->events().tell(&Events::filters);
+}
+
+void NetworkBus::begin_close() noexcept {
   waits_.close();
-  exchange_->close(close_time);
+  exchange_->begin_close(Deadline(close_time));
+  core_->wake();
+}
+
+void NetworkBus::close() noexcept {
+  begin_close();
   // When the simulation has ended, the station is gone with it.
-  core_->call([this] { core_->remove(station_); });
+  exchange_->await_left();
 }
 
 }  // namespace

@@ -100,18 +100,27 @@ void NetworkCore::wake() {
 
 // --- the simulation's thread ---------------------------------------------------------------------
 
-Station* NetworkCore::add(const std::shared_ptr<Exchange>& exchange) {
+bool NetworkCore::add(const std::shared_ptr<Exchange>& exchange) {
   auto station = std::make_unique<Station>(bus_, options_, timing_, epoch_, exchange);
   if (station->begin() != Status::ok) {
-    return nullptr;
+    return false;
   }
   stations_.push_back(std::move(station));
-  return stations_.back().get();
+  return true;
 }
 
-void NetworkCore::remove(Station* station) {
-  station->leave();
-  std::erase_if(stations_, [station](const auto& one) { return one.get() == station; });
+// Simulated time goes on in leave(), so that all stations have to be there meanwhile.
+void NetworkCore::remove_leaving() {
+  std::vector<std::shared_ptr<Exchange>> left;
+  for (const auto& station : stations_) {
+    if (station->wants_to_leave()) {
+      left.push_back(station->leave());
+    }
+  }
+  std::erase_if(stations_, [](const auto& station) { return station->has_left(); });
+  for (const auto& exchange : left) {
+    exchange->left();
+  }
 }
 
 void NetworkCore::run() {
@@ -119,6 +128,7 @@ void NetworkCore::run() {
   do {
     wait();
     advance();
+    remove_leaving();
   } while (run_calls());
   for (const auto& station : stations_) {
     station->end();

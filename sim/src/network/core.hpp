@@ -58,9 +58,9 @@ class NetworkCore {
   /// Frames wait in an exchange where none did.
   void wake();
 
-  /// A new station. @return none: it could not take part.
-  Station* add(const std::shared_ptr<Exchange>& exchange);
-  void remove(Station* station);
+  /// A new station, which goes when its exchange wants to leave. @return false: it could not take
+  /// part.
+  bool add(const std::shared_ptr<Exchange>& exchange);
 
   [[nodiscard]] const NetworkOptions& options() const { return options_; }
   /// For actions only.
@@ -72,6 +72,7 @@ class NetworkCore {
   void advance();
   void wait();
   void poll_stations();
+  void remove_leaving();
   void schedule_poll();
   [[nodiscard]] bool is_busy() const;
 

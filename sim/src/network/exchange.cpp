@@ -31,7 +31,7 @@ Exchange::Offered Exchange::offer(std::span<const Frame> frames, SimTime since) 
   offered.wake = offered.wake && offered.count > 0;
   sender_waits_ = offered.count < frames.size();
   if (sender_waits_) {
-    sendable_.clear();
+    events_.clear_room();
   }
   return offered;
 }
@@ -68,10 +68,20 @@ Statistics Exchange::statistics() const {
   return statistics;
 }
 
-void Exchange::close(std::chrono::nanoseconds patience) {
+void Exchange::begin_close(const Deadline& until) {
+  const std::lock_guard lock(mutex_);
+  if (closed_) {
+    return;
+  }
+  closed_ = until;
+  if (left_) {
+    left_locked();
+  }
+}
+
+void Exchange::await_left() {
   std::unique_lock lock(mutex_);
-  closed_ = true;
-  settled_.wait_for(lock, patience, [this] { return all_settled(); });
+  changed_.wait(lock, [this] { return left_; });
 }
 
 // --- the simulation's side -----------------------------------------------------------------------
@@ -104,14 +114,14 @@ void Exchange::settled(bool sent) {
   --in_chip_;
   statistics_.unsent += sent ? 0 : 1;
   if (all_settled()) {
-    settled_.notify_all();
     wake_sender();
   }
+  look_for_events();
 }
 
 void Exchange::wake_sender() {
   if (std::exchange(sender_waits_, false)) {
-    sendable_.set();
+    events_.set_room();
   }
 }
 
@@ -127,6 +137,7 @@ void Exchange::deliver(const Frame& frame, Timestamp time) {
 void Exchange::enqueue(const Frame& frame, Timestamp time) {
   if (!closed_) {
     queue_.put(frame, time);
+    look_for_events();
   }
 }
 
@@ -139,6 +150,13 @@ void Exchange::tell(const News& news, Timestamp time) {
   if (error_frames_) {
     enqueue(news.report, time);
   }
+  look_for_events();
+}
+
+void Exchange::look_for_events() {
+  Statistics statistics = statistics_;
+  queue_.add_to(statistics);
+  events_.look(state_, statistics.dropped + statistics.unsent + statistics.overruns);
 }
 
 void Exchange::count_outage() {
@@ -157,6 +175,25 @@ void Exchange::abandon_locked() {
     lane.clear();
   }
   wake_sender();
+  look_for_events();
+}
+
+bool Exchange::wants_to_leave() const {
+  const std::lock_guard lock(mutex_);
+  return closed_ && (all_settled() || closed_->passed());
+}
+
+void Exchange::left() {
+  const std::lock_guard lock(mutex_);
+  left_locked();
+}
+
+void Exchange::left_locked() {
+  left_ = true;
+  if (closed_) {
+    events_.tell(&Events::closed);
+  }
+  changed_.notify_all();
 }
 
 void Exchange::end() {
@@ -165,7 +202,8 @@ void Exchange::end() {
   statistics_.unsent += std::exchange(in_chip_, 0);
   state_ = BusState::absent;
   ++statistics_.outages;
-  settled_.notify_all();
+  look_for_events();
+  left_locked();
 }
 
 }  // namespace roio::sim

@@ -10,6 +10,8 @@
 #include <mutex>
 #include <optional>
 #include <roio/bus.hpp>
+#include <roio/parts/bus_events.hpp>
+#include <roio/parts/deadline.hpp>
 #include <roio/parts/fd.hpp>
 #include <roio/parts/lanes.hpp>
 #include <roio/parts/receive_queue.hpp>
@@ -35,7 +37,7 @@ class Exchange {
     bool wake;          ///< The simulation did not know yet that frames wait.
   };
   /// Accepts frames as long as their lanes have room and it is their turn, up to the first of which
-  /// that is not so. If not all were, sendable() is set once it is.
+  /// that is not so. If not all were, events().room() is set once it is.
   /// @param since when in simulated time this is: the simulation may be a bit behind and must not
   ///        send them earlier.
   Offered offer(std::span<const Frame> frames, SimTime since);
@@ -45,11 +47,13 @@ class Exchange {
   void set_filters(std::span<const SocketCanFilter> filters);
   /// Set while frames wait to be taken.
   [[nodiscard]] const EventFlag& readable() const { return queue_.readable(); }
-  [[nodiscard]] const EventFlag& sendable() const { return sendable_; }
+  [[nodiscard]] BusEvents& events() { return events_; }
   [[nodiscard]] BusState state() const;
   [[nodiscard]] Statistics statistics() const;
-  /// Accepts and delivers nothing from now on, and waits until what was accepted has been sent.
-  void close(std::chrono::nanoseconds patience);
+  /// Accepts and delivers nothing from now on. @param until what was accepted may be sent.
+  void begin_close(const Deadline& until);
+  /// Waits until the simulation has no more to do with it.
+  void await_left();
 
   // --- the simulation's side ---------------------------------------------------------------------
 
@@ -72,6 +76,10 @@ class Exchange {
   void count_outage();
   /// Gives up what still waits to be handed over.
   void abandon();
+  /// Whether the station is to go: closed, and what was accepted has been sent, or the time is up.
+  [[nodiscard]] bool wants_to_leave() const;
+  /// The station has gone.
+  void left();
   /// There is no simulation any more.
   void end();
 
@@ -86,17 +94,20 @@ class Exchange {
   void abandon_locked();
   void wake_sender();
   void enqueue(const Frame& frame, Timestamp time);
+  void look_for_events();
+  void left_locked();
 
-  EventFlag sendable_;
+  BusEvents events_;
   const bool error_frames_;
 
   mutable std::mutex mutex_;
-  std::condition_variable settled_;
+  std::condition_variable changed_;  // left_
   std::array<std::deque<Waiting>, lane_count> lanes_;
   std::size_t in_chip_ = 0;
   LaneOrder order_;
   bool sender_waits_ = false;
-  bool closed_ = false;
+  std::optional<Deadline> closed_;  // what was accepted may be sent until then
+  bool left_ = false;
   std::vector<SocketCanFilter> filters_;
   ReceiveQueue queue_{receive_capacity};
   BusState state_ = BusState::active;

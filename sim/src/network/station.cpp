@@ -106,7 +106,7 @@ Timestamp Station::now() const {
   return epoch_ + std::chrono::duration_cast<std::chrono::nanoseconds>(bus_.now());
 }
 
-void Station::leave() {
+std::shared_ptr<Exchange> Station::leave() {
   exchange_->abandon();
   can_.abort();
   for (const SimTime end = bus_.now() + longest_frame_; can_.in_flight() > 0 && bus_.now() < end;) {
@@ -115,6 +115,8 @@ void Station::leave() {
   for (auto left = can_.in_flight(); left > 0; --left) {
     exchange_->settled(false);
   }
+  left_ = true;
+  return exchange_;
 }
 
 }  // namespace roio::sim

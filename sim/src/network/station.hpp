@@ -36,8 +36,11 @@ class Station {
   /// One round of the processor's loop.
   void poll();
 
+  [[nodiscard]] bool wants_to_leave() const { return exchange_->wants_to_leave(); }
   /// Takes back what is not yet on the wire; simulated time goes on until that has come to its end.
-  void leave();
+  /// @return who is to be told when the station is gone.
+  std::shared_ptr<Exchange> leave();
+  [[nodiscard]] bool has_left() const { return left_; }
 
   /// Tells the program that the simulation ends.
   void end() { exchange_->end(); }
@@ -74,6 +77,7 @@ class Station {
   Driver can_;
   ControllerView told_;
   bool beginning_ = false;
+  bool left_ = false;
 };
 
 }  // namespace roio::sim

@@ -66,6 +66,7 @@ std::vector<Backend> backends() {
                  .paced = false,
                  .one_order = true,
                  .refills_fast = true,
+                 .there_at_once = true,
                  .flood = 80'000});
   all.push_back({.name = "local_500k",
                  .fresh = [] { return fresh_local("?bitrate=500000"); },
@@ -73,6 +74,7 @@ std::vector<Backend> backends() {
                  .paced = true,
                  .one_order = true,
                  .refills_fast = true,
+                 .there_at_once = true,
                  .flood = 3'000});
   all.push_back({.name = "simulated_chips",
                  .fresh = fresh_chips,
@@ -80,6 +82,7 @@ std::vector<Backend> backends() {
                  .paced = true,
                  .one_order = true,
                  .refills_fast = true,
+                 .there_at_once = true,
                  .flood = 5'000});
   all.push_back({.name = "memory",
                  .fresh = fresh_memory,
@@ -87,6 +90,7 @@ std::vector<Backend> backends() {
                  .paced = false,
                  .one_order = true,
                  .refills_fast = true,
+                 .there_at_once = true,
                  .flood = 50'000});
 #ifdef ROIO_IMAGES_DIR
   all.push_back({.name = "serial",
@@ -95,6 +99,7 @@ std::vector<Backend> backends() {
                  .paced = true,
                  .one_order = true,
                  .refills_fast = false,
+                 .there_at_once = false,
                  .flood = 5'000});
 #endif
   if (const char* const interface_name = std::getenv("ROIO_TEST_CAN")) {
@@ -104,6 +109,7 @@ std::vector<Backend> backends() {
                    .paced = false,
                    .one_order = false,
                    .refills_fast = true,
+                   .there_at_once = true,
                    .flood = 250'000});
   }
   return all;

@@ -29,6 +29,7 @@ struct Backend {
   /// A sender's controller has the next frame before the pause after the last one is over, but for
   /// every other frame at most.
   bool refills_fast;
+  bool there_at_once;     ///< A bus that is there is opened with OpenOptions::open_timeout zero.
   std::size_t flood = 0;  ///< Frames that a receiver which does not read may well be too many for.
 };
 

@@ -91,6 +91,7 @@ class ScriptedBus final : public Bus {
   std::deque<Received> incoming;
   std::vector<Frame> outgoing;
   std::vector<SocketCanFilter> filters;
+  int begun = 0;  // times that they were set without waiting
   Result when_empty = Result::timeout;
 
   Transfer send(std::span<const Frame> frames, Timeout) override {
@@ -106,12 +107,19 @@ class ScriptedBus final : public Bus {
   void set_filters(std::span<const SocketCanFilter> given) override {
     filters.assign(given.begin(), given.end());
   }
+  void begin_set_filters(std::span<const SocketCanFilter> given) override {
+    set_filters(given);
+    ++begun;
+  }
   [[nodiscard]] int fd() const noexcept override { return -1; }
+  [[nodiscard]] int event_fd() const noexcept override { return -1; }
+  Events take_events() override { return {}; }
   [[nodiscard]] BusState state() const override { return BusState::active; }
   [[nodiscard]] Statistics statistics() const override { return {}; }
   void cancel() noexcept override {}
   void resume() noexcept override {}
   void close() noexcept override {}
+  void begin_close() noexcept override {}
   [[nodiscard]] const std::string& name() const noexcept override { return name_; }
 
  private:
@@ -200,6 +208,15 @@ TEST(Node, AsksTheBusForItsInterestAlone) {
   EXPECT_EQ(on.bus.filters[1].can_id, 0x801FE000U);
   EXPECT_EQ(on.bus.filters[1].can_mask, 0xC3FFE000U);
   EXPECT_EQ(on.node.address(), own);
+  EXPECT_EQ(on.bus.begun, 0);
+}
+
+TEST(Node, NeedNotWaitForItsFilters) {
+  auto owned = std::make_unique<ScriptedBus>();
+  const ScriptedBus& bus = *owned;
+  const Node node(std::move(owned), own, {.background = true});
+  EXPECT_EQ(bus.begun, 1);
+  EXPECT_EQ(bus.filters.size(), 2U);
 }
 
 TEST(Node, SendsFromItsOwnAddress) {

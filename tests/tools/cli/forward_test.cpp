@@ -92,7 +92,10 @@ class FakeBus final : public Bus {
   }
 
   void set_filters(std::span<const SocketCanFilter> /*filters*/) override {}
+  void begin_set_filters(std::span<const SocketCanFilter> /*filters*/) override {}
   [[nodiscard]] int fd() const noexcept override { return -1; }
+  [[nodiscard]] int event_fd() const noexcept override { return -1; }
+  Events take_events() override { return {}; }
   [[nodiscard]] BusState state() const override { return BusState::active; }
   [[nodiscard]] Statistics statistics() const override {
     const std::lock_guard lock(mutex_);
@@ -101,6 +104,7 @@ class FakeBus final : public Bus {
   void cancel() noexcept override { cancelled_ = true; }
   void resume() noexcept override { cancelled_ = false; }
   void close() noexcept override {}
+  void begin_close() noexcept override {}
   [[nodiscard]] const std::string& name() const noexcept override { return name_; }
 
  private:

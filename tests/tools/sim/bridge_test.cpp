@@ -42,12 +42,16 @@ class OtherBus final : public Bus {
     return {count > 0 ? Result::ok : Result::timeout, count};
   }
   void set_filters(std::span<const SocketCanFilter> /*filters*/) override {}
+  void begin_set_filters(std::span<const SocketCanFilter> /*filters*/) override {}
   [[nodiscard]] int fd() const noexcept override { return 77; }
+  [[nodiscard]] int event_fd() const noexcept override { return -1; }
+  Events take_events() override { return {}; }
   [[nodiscard]] BusState state() const override { return BusState::active; }
   [[nodiscard]] Statistics statistics() const override { return {.dropped = 3}; }
   void cancel() noexcept override {}
   void resume() noexcept override {}
   void close() noexcept override {}
+  void begin_close() noexcept override {}
   [[nodiscard]] const std::string& name() const noexcept override { return name_; }
 
  private:

@@ -139,8 +139,8 @@ bool is_verb(std::string_view word) {
 constexpr std::array<std::string_view, 5> own_verbs{"quit", "help", "wait", "alone", "together"};
 
 Parsed<Action> parse_own_action(std::string_view verb, std::string_view& rest) {
-  // No temporary variants, and one that begins as the largest of these: gcc 12 takes parts of others
-  // for uninitialised.
+  // No temporary variants, and one that begins as the largest of these: gcc 12 takes parts of
+  // others for uninitialised.
   Action action = Wait{sim::SimTime(0)};
   if (verb == "quit") {
     action.emplace<Quit>();

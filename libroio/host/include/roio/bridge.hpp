@@ -15,6 +15,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <system_error>
 #include <vector>
 
 #include <roio/bus.hpp>
@@ -109,6 +110,13 @@ struct BridgeLineCounters {
   std::uint64_t unsettled = 0;      ///< Of which it is not known yet, now.
 };
 
+/// What became of a request that was begun by one of Bridge::begin_...().
+struct BridgeReply {
+  std::uint32_t id = 0;                    ///< Which: what begin_...() returned.
+  std::optional<std::system_error> error;  ///< What the waiting form throws. None: it is done.
+  std::optional<BridgeCounters> counters;  ///< Of begin_counters().
+};
+
 class ROIO_EXPORT Bridge {
  public:
   Bridge() = default;
@@ -142,6 +150,17 @@ class ROIO_EXPORT Bridge {
   virtual void identify(std::chrono::seconds duration,
                         Timeout timeout = std::chrono::seconds(1)) = 0;
   // NOLINTEND(google-default-arguments)
+
+  // The same without waiting. Each returns a number of its own; the reply comes by take_reply(), in
+  // a few seconds at most, whatever becomes of the bridge, and Events::reply tells of it.
+  // All throw std::system_error std::errc::no_buffer_space when 64 are under way or not taken.
+
+  virtual std::uint32_t begin_counters() = 0;
+  virtual std::uint32_t begin_set_bus(std::uint32_t bitrate_bps, BridgeMode mode) = 0;
+  virtual std::uint32_t begin_set_address(std::optional<Address> address) = 0;
+  virtual std::uint32_t begin_identify(std::chrono::seconds duration) = 0;
+  /// The next reply; none: there is none now.
+  virtual std::optional<BridgeReply> take_reply() = 0;
 };
 
 /// The bridge behind a bus that open("serial:...") returned; null for any other kind of bus. Lives

@@ -8,7 +8,19 @@
 /// which is an outage of milliseconds.
 ///
 /// Threads: one thread may send while another receives, and any thread may call cancel(), close(),
-/// state() and statistics(). Two threads must not receive (or send) at the same time.
+/// state(), statistics() and take_events(). Two threads must not receive (or send) at the same
+/// time.
+///
+/// In somebody else's event loop nothing has to wait: fd() tells when to call receive(), event_fd()
+/// when to call take_events(), and each call that waits has a form that does not:
+///
+///   open()             OpenOptions::background    Events::state when it is there, or trouble()
+///   send(), receive()  the timeout no_wait        Events::room; fd()
+///   set_filters()      begin_set_filters()        Events::filters
+///   close()            begin_close()              Events::closed
+///   Bridge's requests  begin_...()                Events::reply
+///   Node's constructor NodeOptions::background    Events::filters
+///
 /// Errors: what should not happen throws std::system_error (error.hpp); a timeout, a cancelled wait
 /// and a closed bus are values.
 #ifndef ROIO_BUS_HPP
@@ -22,6 +34,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <system_error>
 
 #include <roio/export.hpp>
 #include <roio/filter_socketcan.hpp>
@@ -101,6 +114,25 @@ enum class Carry : std::uint8_t {
               ///< there is such a program.
 };
 
+/// What has happened to a bus. Each is told once, however often it happened meanwhile.
+struct Events {
+  /// A send() ended before it had taken all, and there may be room since.
+  bool room = false;
+  /// state() or trouble() has changed, and maybe back again.
+  bool state = false;
+  /// Statistics::dropped, unsent or overruns has grown.
+  bool loss = false;
+  /// What begin_set_filters() was given last holds, or will from the moment that an absent bus is
+  /// there.
+  bool filters = false;
+  /// Bridge::take_reply() has something.
+  bool reply = false;
+  /// The bus is closed, and its end will not wait for anything.
+  bool closed = false;
+
+  [[nodiscard]] bool any() const { return room || state || loss || filters || reply || closed; }
+};
+
 struct OpenOptions {
   /// Also return the controller's error reports (FrameKind::error) from receive(). They are decoded
   /// into state() and statistics() either way.
@@ -108,8 +140,15 @@ struct OpenOptions {
   /// Receive nothing until set_filters(): for programs that only send.
   bool send_only = false;
   /// How long open() may wait for the bus (a local bus whose first program is just starting or
-  /// leaving, a board that is reset when its port is opened).
+  /// leaving, a board that is reset when its port is opened). Zero takes a bus that is there.
+  /// Whether a bridge is there shows only when it answers, so there less than a second counts as a
+  /// second.
   Timeout open_timeout = std::chrono::seconds(5);
+  /// open() does not wait: the bus is absent until it is there, and trouble() says what open()
+  /// would have thrown, as soon as that is known; it is looked for all the same. What no waiting
+  /// mends is thrown: text that names no bus, a kernel without CAN, a folder that is another
+  /// user's, no descriptors or threads left.
+  bool background = false;
   /// A bridge: how long a frame that send() has accepted may be on its way. It is on the bus by
   /// then (less a ninth at most), or never, whatever becomes of this program, the line and the bus
   /// meanwhile, and counted as Statistics::unsent. Less than some milliseconds is less than the
@@ -156,14 +195,30 @@ class ROIO_EXPORT Bus {
   /// frames of all kinds are received (none with OpenOptions::send_only). Error reports are not
   /// subject to filters. Frames already queued by the old filters may still come.
   /// @throws Errc::too_many_filters: more than 512; the filters stay as they were.
+  /// On a bridge this waits for its answer, a second at most.
   virtual void set_filters(std::span<const SocketCanFilter> filters) = 0;
+  /// The same without waiting; Events::filters tells when they hold.
+  virtual void begin_set_filters(std::span<const SocketCanFilter> filters) = 0;
 
   /// A file descriptor that poll() reports readable when receive() may have something; it stays the
   /// same for the life of the object. After it was readable, call receive() until it returns
   /// timeout. Owned by the bus: do not read, write or close it.
   [[nodiscard]] virtual int fd() const noexcept = 0;
 
+  /// A file descriptor that poll() reports readable when take_events() may have something. As with
+  /// fd(), it stays the same and is the bus's own. Some things come to light only in receive(), so
+  /// watch both: a controller's state and losses on SocketCAN.
+  [[nodiscard]] virtual int event_fd() const noexcept = 0;
+  /// What has happened since it was last called, or since open() returned. Never waits; seldom
+  /// there is nothing, though event_fd() was readable. Also after close(). A local bus whose
+  /// carrier has been stopped tells that 200 ms after frames have begun to wait for it; while none
+  /// do, only state() looks.
+  virtual Events take_events() = 0;
+
   [[nodiscard]] virtual BusState state() const = 0;
+  /// Why the bus is absent or down, as far as it is known: what open() would throw now. None: it is
+  /// there, or has just gone.
+  [[nodiscard]] virtual std::optional<std::system_error> trouble() const { return std::nullopt; }
   [[nodiscard]] virtual Statistics statistics() const = 0;
 
   /// How many others receive from this local bus, as the program that carries it last told. None:
@@ -179,6 +234,9 @@ class ROIO_EXPORT Bus {
   /// closed. Later calls return closed at once. Done by the destructor too; no call may be running
   /// then.
   virtual void close() noexcept = 0;
+  /// The same without waiting: Events::closed tells when all is handed over and the bus has ended.
+  /// Until then the destructor waits for that.
+  virtual void begin_close() noexcept = 0;
 
   /// What open() was given, without options: "can0", "local:robot".
   [[nodiscard]] virtual const std::string& name() const noexcept = 0;

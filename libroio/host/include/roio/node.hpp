@@ -39,13 +39,19 @@ struct NodeCounters {
   std::uint64_t not_wanted = 0;      ///< Let through by a filter that could not say it exactly.
 };
 
+struct NodeOptions {
+  /// The constructor does not wait until the node's filters hold: the bus's Events::filters tells.
+  /// What comes before that and is not for the node is counted, as ever.
+  bool background = false;
+};
+
 class ROIO_EXPORT Node {
  public:
   /// A node that hears its own address and broadcasts to its subnet.
   /// @throws std::invalid_argument: own is not 0..31 . 0..254, or bus is null.
-  Node(std::unique_ptr<Bus> bus, Address own);
+  Node(std::unique_ptr<Bus> bus, Address own, const NodeOptions& options = {});
   /// A node that hears what `interest` says.
-  Node(std::unique_ptr<Bus> bus, const Interest& interest);
+  Node(std::unique_ptr<Bus> bus, const Interest& interest, const NodeOptions& options = {});
 
   /// Sends up to 8 bytes to an address or to broadcast_of(subnet).
   /// @throws std::invalid_argument: more than 8 bytes, or a subnet above 31.

@@ -10,7 +10,8 @@
 ///   ReceiveQueue       frames for the program: bounded, counts what finds no room, tells it with
 ///                      the next frame; its flag is Bus::fd()
 ///   Waits              cancel(), resume() and close(), and waits that they end
-///   EventFlag          a flag for poll(): room in a transmit queue, work for a thread, its end
+///   BusEvents          room to send, state, losses, close: Bus::event_fd() and take_events()
+///   EventFlag          a flag for poll(): work for a thread, its end
 ///   UniqueFd           owns a descriptor
 ///   Deadline           a timeout that may be `forever`, as a point in time
 ///   start_thread       a thread that takes none of the program's signals
@@ -26,7 +27,7 @@
 ///     ~MyBus() override { close(); }
 ///     Transfer send(std::span<const Frame> frames, Timeout timeout) override {
 ///       roio::check_sendable(frames);
-///       return roio::send_queued(waits_, sendable_, frames, timeout,
+///       return roio::send_queued(waits_, events_, frames, timeout,
 ///           [this](auto rest) { return offer(rest); },
 ///           [this](bool gives_up) { count(gives_up); });
 ///     }
@@ -35,42 +36,52 @@
 ///           [this](auto room) { return take(room); });
 ///     }
 ///     int fd() const noexcept override { return queue_.readable().fd(); }
+///     int event_fd() const noexcept override { return events_.fd(); }
+///     Events take_events() override { return events_.take(); }
 ///     void cancel() noexcept override { waits_.cancel(); }
 ///     void resume() noexcept override { waits_.resume(); }
+///     void begin_close() noexcept override { waits_.close(); work_.set(); }
 ///     void close() noexcept override;
 ///    private:
 ///     void serve();
 ///     std::mutex mutex_;    // over queue_ and all counts; the flags need none
 ///     roio::ReceiveQueue queue_{16384};
-///     roio::EventFlag sendable_, stop_;
+///     roio::BusEvents events_;
+///     roio::EventFlag work_;
 ///     roio::Waits waits_;
 ///     std::thread thread_;  // last: it uses all of the above
 ///   };
 ///
-/// - offer(): under the lock: nullopt when closed, else how many it accepted. If not all, it clears
-///   sendable_.
+/// - offer(): under the lock: nullopt when closed, else how many it accepted. If not all, it calls
+///   events_.clear_room().
 /// - take(): under the lock: nullopt when closed, else queue_.take(room).
-/// - close(): waits_.close(); what was accepted goes out, a second at most; stop_.set();
-///   thread_.join().
-/// - serve(): polls the carrier and stop_. What has come: queue_.put(), under the lock. What has
-///   gone, so that there is room: sendable_.set().
+/// - serve(): polls the carrier and work_. What has come: queue_.put(), under the lock. What has
+///   gone, so that there is room: events_.set_room(). After each round: events_.look(), under the
+///   lock. When waits_ are closed and what was accepted has gone out, or after a second, it ends,
+///   with events_.tell(&Events::closed) as the last.
+/// - close(): begin_close(), and joins the thread.
 ///
 /// Threads. Of a bus, one thread may send while another receives, and any may call the rest. Waits,
-/// EventFlag and Deadline take care of themselves; ReceiveQueue and the backend's own counts need
-/// the backend's lock. No lock is held while a wait lasts: send_queued() and receive_queued() call
-/// what they are given without one, and that locks by itself.
+/// EventFlag, BusEvents (but for look()) and Deadline take care of themselves; ReceiveQueue and the
+/// backend's own counts need the backend's lock. No lock is held while a wait lasts: send_queued()
+/// and receive_queued() call what they are given without one, and that locks by itself.
 ///
 /// Lifetimes. The parts own their descriptors and nothing else, and none starts a thread. Waits and
 /// flags must outlive all calls that wait for them: close() makes these return, and the contract
 /// wants none to be running when the bus ends. A thread goes before what it uses.
 ///
 /// Order. Set a flag after what it tells of is there, and clear it only under the lock under which
-/// that is looked at; else a wait misses it. close() is Waits::close() first, so that nobody is
-/// accepted any more, then what was accepted (a second at most), then the thread.
+/// that is looked at; else a wait misses it. The end is Waits::close() first, so that nobody is
+/// accepted any more, then what was accepted (a second at most), then Events::closed, then the
+/// thread. Of two threads that close at once, only one may join.
 ///
-/// Errors. What takes descriptors (EventFlag, and with it Waits and ReceiveQueue) or a thread
-/// throws std::system_error when the system has none left, and Waits::wait() when poll() fails.
-/// check_sendable() throws Errc::bad_frame. Timeout, cancelled and closed are values (Result).
+/// Nothing waits in begin_set_filters(), begin_close(), take_events(), and in send() and receive()
+/// with no_wait: other people's event loops call them.
+///
+/// Errors. What takes descriptors (EventFlag, and with it BusEvents, Waits and ReceiveQueue) or a
+/// thread throws std::system_error when the system has none left, and Waits::wait() when poll()
+/// fails. check_sendable() throws Errc::bad_frame. Timeout, cancelled and closed are values
+/// (Result).
 ///
 /// Nothing is lost in silence: whatever a backend drops, it counts in Statistics, and tells
 /// receivers by Received::lost_before: ReceiveQueue does both for what it drops itself, and lose()
@@ -78,6 +89,7 @@
 #ifndef ROIO_PARTS_HPP
 #define ROIO_PARTS_HPP
 
+#include <roio/parts/bus_events.hpp>
 #include <roio/parts/controller_report.hpp>
 #include <roio/parts/deadline.hpp>
 #include <roio/parts/fd.hpp>

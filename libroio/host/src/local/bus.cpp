@@ -4,21 +4,16 @@
 #include <unistd.h>
 
 #include <array>
-#include <condition_variable>
-#include <mutex>
+#include <cerrno>
 #include <new>
 #include <roio/error.hpp>
 #include <roio/parts/frame_check.hpp>
 #include <roio/parts/queued_calls.hpp>
-#include <roio/parts/thread.hpp>
-#include <thread>
 #include <utility>
 #include <vector>
 
-#include "local/connection.hpp"
 #include "local/fork.hpp"
-#include "local/inbox.hpp"
-#include "local/outbox.hpp"
+#include "local/local_bus.hpp"
 
 namespace roio {
 namespace local {
@@ -32,88 +27,84 @@ std::vector<SocketCanFilter> first_filters(const OpenOptions& options) {
                            : std::vector<SocketCanFilter>{SocketCanFilter{0, 0}};
 }
 
-/// The client of a local bus. A thread of its own reads, so that frames, and a hub to be replaced,
-/// do not wait for the program to call.
-class LocalBus final : public Bus {
- public:
-  LocalBus(const std::string& bus_name, std::optional<std::uint32_t> bitrate_bps,
-           const OpenOptions& options)
-      : name_("local:" + bus_name),
-        connector_(bus_name, bitrate_bps, options.carry),
-        inbox_(connector_.client(), first_filters(options)),
-        outbox_(options.in_order) {
-    auto connection = connector_.connect(Deadline(options.open_timeout), stop_);
-    if (!connection) {
-      throw connector_.why_not();
-    }
-    adopt(std::move(*connection));
-    thread_ = start_thread([this] { run(); });
+}  // namespace
+
+// --- opening and closing -------------------------------------------------------------------------
+
+LocalBus::LocalBus(const std::string& bus_name, std::optional<std::uint32_t> bitrate_bps,
+                   const OpenOptions& options)
+    : name_("local:" + bus_name),
+      connector_(bus_name, bitrate_bps, options.carry),
+      open_timeout_(options.open_timeout),
+      inbox_(connector_.client(), first_filters(options)),
+      outbox_(options.in_order) {
+  events_.look(BusState::absent, 0);
+  events_.forget();
+  thread_.start([this] { run(); });
+  if (!options.background) {
+    await_first_look();
   }
+}
 
-  LocalBus(const LocalBus&) = delete;
-  LocalBus& operator=(const LocalBus&) = delete;
-  ~LocalBus() override { close(); }
+void LocalBus::await_first_look() {
+  std::unique_lock lock(mutex_);
+  changed_.wait(lock, [this] { return link_ || trouble_; });
+  if (!link_) {
+    const std::system_error trouble = *trouble_;
+    lock.unlock();
+    close();
+    throw trouble;
+  }
+  events_.forget();
+}
 
-  using Bus::receive;
-  using Bus::send;
-  Transfer send(std::span<const Frame> frames, Timeout timeout) override;
-  Transfer receive(std::span<Received> frames, Timeout timeout) override;
-  void set_filters(std::span<const SocketCanFilter> filters) override;
-  [[nodiscard]] int fd() const noexcept override { return inbox_.readable().fd(); }
-  [[nodiscard]] BusState state() const override;
-  [[nodiscard]] Statistics statistics() const override;
-  [[nodiscard]] std::optional<std::size_t> listeners() const override;
-  void cancel() noexcept override { waits_.cancel(); }
-  void resume() noexcept override { waits_.resume(); }
-  void close() noexcept override;
-  [[nodiscard]] const std::string& name() const noexcept override { return name_; }
+void LocalBus::begin_close() noexcept {
+  const std::lock_guard lock(mutex_);
+  if (waits_.is_closed()) {
+    return;
+  }
+  waits_.close();
+  closing_.emplace(close_time);
+  ask_for_done();
+  if (outbox_.size() == 0) {
+    stop_.set();
+  }
+  wake_.set();
+}
 
- private:
-  /// To the hub.
-  struct Link {
-    Stream stream;
-    UniqueFd wake;
-    pid_t hub;
-  };
+void LocalBus::close() noexcept {
+  begin_close();
+  thread_.join();
+}
 
-  // The caller holds mutex_ for these.
-  std::optional<std::size_t> offer(std::span<const Frame> frames);
-  std::size_t take(std::span<Received> frames);
-  void adopt(Connection connection);
-  void settle();
-  void ask_for_done();
-  void flush();
-  void tell_if_waited_for();
+// Closed, and nothing left to hand over, or no time.
+bool LocalBus::is_over() const {
+  const std::lock_guard lock(mutex_);
+  return closing_ && (outbox_.size() == 0 || closing_->passed());
+}
 
-  // The reading thread.
-  void run();
-  void work();
-  bool prepare_to_sleep();
-  void sleep();
-  void disconnect();
-  void reconnect();
+void LocalBus::finish() {
+  {
+    const std::lock_guard lock(mutex_);
+    settle();
+    statistics_.unsent += outbox_.size();
+    look_for_events();
+  }
+  connector_.end_presence();
+  {
+    const std::lock_guard lock(mutex_);
+    link_.reset();
+  }
+  connector_.leave();
+  events_.tell(&Events::closed);
+}
 
-  std::string name_;
-  Connector connector_;  // by the constructor, then by the reading thread, then by close()
-  EventFlag sendable_;   // room may have come since send() found none
-  EventFlag stop_;
-  EventFlag wake_;  // the reading thread has bytes to send, too
-  Waits waits_;
-
-  mutable std::mutex mutex_;
-  std::condition_variable all_done_;
-  std::optional<Link> link_;  // changed by the reading thread only
-  Inbox inbox_;
-  Outbox outbox_;
-  bool closing_ = false;
-  Statistics statistics_;
-  std::thread thread_;
-};
+// --- frames --------------------------------------------------------------------------------------
 
 Transfer LocalBus::send(std::span<const Frame> frames, Timeout timeout) {
   check_sendable(frames);
   return send_queued(
-      waits_, sendable_, frames, timeout,
+      waits_, events_, frames, timeout,
       [this](std::span<const Frame> rest) {
         const std::lock_guard lock(mutex_);
         return offer(rest);
@@ -140,16 +131,18 @@ std::optional<std::size_t> LocalBus::offer(std::span<const Frame> frames) {
     if (asked) {
       break;
     }
-    sendable_.clear();
+    events_.clear_room();
     ask_for_done();
     asked = true;
   }
-  if (count < frames.size() && !link_) {
-    sendable_.clear();
+  sender_waits_ = count < frames.size();
+  if (sender_waits_ && !link_) {
+    events_.clear_room();
   }
   statistics_.sent += count;
   if (link_) {
     flush();
+    watch_.begin(outbox_.settled());
   }
   return count;
 }
@@ -208,12 +201,27 @@ void LocalBus::set_filters(std::span<const SocketCanFilter> filters) {
   wake_.set();
 }
 
+// They are in the bus's memory at once.
+void LocalBus::begin_set_filters(std::span<const SocketCanFilter> filters) {
+  set_filters(filters);
+  events_.tell(&Events::filters);
+}
+
+// --- what is known -------------------------------------------------------------------------------
+
 BusState LocalBus::state() const {
   const std::lock_guard lock(mutex_);
   if (!link_) {
     return BusState::absent;
   }
   return is_stopped(link_->hub) ? BusState::down : BusState::active;
+}
+
+std::optional<std::system_error> LocalBus::trouble() const {
+  const std::lock_guard lock(mutex_);
+  return link_ && is_stopped(link_->hub)
+             ? std::system_error(Errc::carrier_stopped, name_ + ": " + describe_process(link_->hub))
+             : trouble_;
 }
 
 Statistics LocalBus::statistics() const {
@@ -228,29 +236,15 @@ std::optional<std::size_t> LocalBus::listeners() const {
   return link_ ? std::optional(inbox_.listeners()) : std::nullopt;
 }
 
-void LocalBus::close() noexcept {
-  {
-    std::unique_lock lock(mutex_);
-    if (waits_.is_closed()) {
-      return;
-    }
-    waits_.close();
-    closing_ = true;
-    ask_for_done();
-    all_done_.wait_for(lock, close_time, [this] { return outbox_.size() == 0; });
-    settle();
-    statistics_.unsent += outbox_.size();
-  }
-  stop_.set();
-  thread_.join();
-  connector_.end_presence();
-  const std::lock_guard lock(mutex_);
-  link_.reset();
-  connector_.leave();
+void LocalBus::look_for_events() {
+  const BusState running = watch_.is_stopped() ? BusState::down : BusState::active;
+  events_.look(link_ ? running : BusState::absent, inbox_.dropped() + statistics_.unsent);
 }
 
+// --- the reading thread --------------------------------------------------------------------------
+
 void LocalBus::run() {
-  while (!stop_.is_set()) {
+  while (!is_over()) {
     try {
       // Only this thread ends or replaces the link, so it may look without the lock.
       if (!link_) {
@@ -262,9 +256,11 @@ void LocalBus::run() {
     } catch (const std::bad_alloc&) {
       // Without memory it cannot keep up; what was lost is counted. It comes back when there is.
       disconnect();
+      note_trouble(std::system_error(ENOMEM, std::generic_category(), name_));
       static_cast<void>(::poll(nullptr, 0, static_cast<int>(retry_interval.count())));
     }
   }
+  finish();
 }
 
 /// @return false: there is more to read.
@@ -275,22 +271,29 @@ bool LocalBus::prepare_to_sleep() {
 
 void LocalBus::sleep() {
   bool flushed = true;
+  int patience_ms = -1;
   {
     const std::lock_guard lock(mutex_);
     flushed = link_->stream.flushed();
+    patience_ms = closing_ ? closing_->poll_ms() : -1;
   }
   const auto events = static_cast<short>(flushed ? POLLIN : POLLIN | POLLOUT);
   std::array<pollfd, 4> entries{{{link_->stream.fd(), events, 0},
                                  {link_->wake.get(), POLLIN, 0},
                                  {wake_.fd(), POLLIN, 0},
-                                 {stop_.fd(), POLLIN, 0}}};
-  static_cast<void>(::poll(entries.data(), entries.size(), -1));
+                                 {watch_.fd(), POLLIN, 0}}};
+  static_cast<void>(::poll(entries.data(), entries.size(), patience_ms));
   if (entries[1].revents != 0) {
     std::uint64_t count = 0;
     static_cast<void>(!::read(link_->wake.get(), &count, sizeof count));
   }
   if (entries[2].revents != 0) {
     wake_.clear();
+  }
+  if (entries[3].revents != 0) {
+    const std::lock_guard lock(mutex_);
+    settle();
+    watch_.look(link_->hub, outbox_.settled(), outbox_.size() > 0);
   }
   // After its welcome a hub says nothing more, so this is its end.
   if ((entries[0].revents & (POLLIN | POLLHUP | POLLERR)) != 0) {
@@ -303,7 +306,8 @@ void LocalBus::work() {
   inbox_.stay_awake();
   inbox_.fetch();
   settle();
-  if (closing_ && outbox_.size() > 0) {
+  // The hub may have answered the last time with what was known already.
+  if (sender_waits_ || (closing_ && outbox_.size() > 0)) {
     ask_for_done();
   }
   if (link_) {
@@ -311,10 +315,10 @@ void LocalBus::work() {
     static_cast<void>(link_->stream.flush());
     tell_if_waited_for();
   }
-  sendable_.set();
-  if (outbox_.size() == 0) {
-    all_done_.notify_all();
+  if (std::exchange(settled_seen_, outbox_.settled()) != outbox_.settled()) {
+    make_room();
   }
+  look_for_events();
 }
 
 void LocalBus::disconnect() {
@@ -322,22 +326,35 @@ void LocalBus::disconnect() {
   if (link_) {
     link_.reset();
     ++statistics_.outages;
+    look_for_events();
   }
 }
 
 void LocalBus::reconnect() {
-  std::optional<Connection> connection;
+  const Timeout time = std::exchange(has_looked_, true) ? retry_interval : open_timeout_;
   try {
-    connection = connector_.connect(Deadline(retry_interval), stop_);
-  } catch (const std::system_error&) {
+    if (auto connection = connector_.connect(Deadline(time), stop_)) {
+      const std::lock_guard lock(mutex_);
+      adopt(std::move(*connection));
+      return;
+    }
+    note_trouble(connector_.why_not());
+  } catch (const std::system_error& error) {
     // Another kind of hub has taken the name. state() says absent, sends time out; it may leave
     // again.
-    static_cast<void>(::poll(nullptr, 0, static_cast<int>(retry_interval.count())));
+    note_trouble(error);
+    pollfd entry{stop_.fd(), POLLIN, 0};
+    static_cast<void>(::poll(&entry, 1, static_cast<int>(retry_interval.count())));
   }
-  if (connection) {
-    const std::lock_guard lock(mutex_);
-    adopt(std::move(*connection));
+}
+
+void LocalBus::note_trouble(const std::system_error& trouble) {
+  const std::lock_guard lock(mutex_);
+  if (!closing_ && (!trouble_ || trouble_->code() != trouble.code())) {
+    events_.tell(&Events::state);
   }
+  trouble_ = trouble;
+  changed_.notify_all();
 }
 
 void LocalBus::adopt(Connection connection) {
@@ -348,10 +365,22 @@ void LocalBus::adopt(Connection connection) {
   link_.emplace(Link{std::move(connection.stream), std::move(connection.wake), connection.hub});
   statistics_.resent += outbox_.offer_again(link_->stream.out());
   flush();
-  sendable_.set();
+  trouble_.reset();
+  watch_.reset();
+  if (outbox_.size() > 0) {
+    watch_.begin(outbox_.settled());
+  }
+  make_room();
+  look_for_events();
+  changed_.notify_all();
 }
 
-}  // namespace
+void LocalBus::make_room() {
+  if (std::exchange(sender_waits_, false)) {
+    events_.set_room();
+  }
+}
+
 }  // namespace local
 
 std::unique_ptr<Bus> open_local(const std::string& bus_name,

@@ -62,7 +62,8 @@ class ParentsBus final : public Bus {
       : bus_(std::move(bus)),
         forks_(Forks::instance().count()),
         name_(bus_->name()),
-        fd_(bus_->fd()) {}
+        fd_(bus_->fd()),
+        event_fd_(bus_->event_fd()) {}
   ParentsBus(const ParentsBus&) = delete;
   ParentsBus& operator=(const ParentsBus&) = delete;
   ~ParentsBus() override {
@@ -85,9 +86,19 @@ class ParentsBus final : public Bus {
       bus_->set_filters(filters);
     }
   }
+  void begin_set_filters(std::span<const SocketCanFilter> filters) override {
+    if (is_ours()) {
+      bus_->begin_set_filters(filters);
+    }
+  }
   [[nodiscard]] int fd() const noexcept override { return fd_; }
+  [[nodiscard]] int event_fd() const noexcept override { return event_fd_; }
+  Events take_events() override { return is_ours() ? bus_->take_events() : Events{}; }
   [[nodiscard]] BusState state() const override {
     return is_ours() ? bus_->state() : BusState::absent;
+  }
+  [[nodiscard]] std::optional<std::system_error> trouble() const override {
+    return is_ours() ? bus_->trouble() : std::nullopt;
   }
   [[nodiscard]] Statistics statistics() const override {
     return is_ours() ? bus_->statistics() : Statistics{};
@@ -110,6 +121,11 @@ class ParentsBus final : public Bus {
       bus_->close();
     }
   }
+  void begin_close() noexcept override {
+    if (is_ours()) {
+      bus_->begin_close();
+    }
+  }
   [[nodiscard]] const std::string& name() const noexcept override { return name_; }
 
  private:
@@ -119,6 +135,7 @@ class ParentsBus final : public Bus {
   const unsigned forks_;
   const std::string name_;
   const int fd_;
+  const int event_fd_;
 };
 
 }  // namespace

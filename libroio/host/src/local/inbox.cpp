@@ -135,4 +135,10 @@ void Inbox::add_to(Statistics& statistics) const {
   }
 }
 
+std::uint64_t Inbox::dropped() const {
+  Statistics statistics;
+  add_to(statistics);
+  return statistics.dropped;
+}
+
 }  // namespace roio::local

@@ -47,6 +47,7 @@ class Inbox {
   /// Other clients that listen.
   [[nodiscard]] std::size_t listeners() const;
   void add_to(Statistics& statistics) const;
+  [[nodiscard]] std::uint64_t dropped() const;
 
  private:
   struct Log {

@@ -42,6 +42,7 @@ void Outbox::settle(const Slot& slot) {
     const std::uint64_t done = slot.done.at(lane).load(std::memory_order_seq_cst);
     while (!kept.empty() && kept.front().sequence <= done) {
       kept.pop_front();
+      ++settled_;
       offered_.at(lane) -= std::min<std::size_t>(offered_.at(lane), 1);
     }
   }

@@ -38,6 +38,8 @@ class Outbox {
 
   /// On their way.
   [[nodiscard]] std::size_t size() const { return kept_[0].size() + kept_[1].size(); }
+  /// How many have been forgotten, in all.
+  [[nodiscard]] std::uint64_t settled() const { return settled_; }
 
  private:
   const bool in_order_;
@@ -45,6 +47,7 @@ class Outbox {
   std::array<std::deque<OfferedFrame>, lane_count> kept_;
   std::array<std::size_t, lane_count> offered_{};  // of kept_, to this hub
   std::array<std::uint64_t, lane_count> sequence_{};
+  std::uint64_t settled_ = 0;
 };
 
 }  // namespace roio::local

@@ -4,27 +4,15 @@
 
 #include <algorithm>
 #include <array>
-#include <condition_variable>
-#include <mutex>
-#include <roio/bridge.hpp>
 #include <roio/error.hpp>
-#include <roio/parts/deadline.hpp>
 #include <roio/parts/frame_check.hpp>
 #include <roio/parts/queued_calls.hpp>
-#include <roio/parts/receive_queue.hpp>
-#include <roio/parts/thread.hpp>
-#include <thread>
 #include <utility>
-#include <vector>
 
-#include "serial/controller_watch.hpp"
-#include "serial/filters.hpp"
-#include "serial/finder.hpp"
 #include "serial/nonce.hpp"
-#include "serial/ports.hpp"
 #include "serial/pump.hpp"
+#include "serial/serial_bus.hpp"
 #include "serial/trouble.hpp"
-#include "serial/wall_clock.hpp"
 
 namespace roio {
 namespace serial {
@@ -32,125 +20,41 @@ namespace {
 
 using std::chrono::milliseconds;
 
+// Whether a bridge is there shows only when it answers, and is set up.
+constexpr milliseconds least_open_time{1000};
 constexpr milliseconds close_time{1000};
 constexpr milliseconds bye_time{200};
-constexpr milliseconds retry_interval{100};  // to open the port again
 // A new filter holds when the call returns, if the bridge is there to say so.
 constexpr milliseconds filter_time{1000};
-constexpr std::size_t receive_capacity = 16384;
 
-/// What a condition variable can wait for.
-Timeout bounded(Timeout timeout) {
-  return std::clamp<Timeout>(timeout, no_wait, std::chrono::hours(1));
-}
-
-/// A bridge as a bus. A thread of its own serves port and session, so that neither waits for the
-/// program to call.
-class SerialBus final : public Bus, public Bridge {
- public:
-  SerialBus(std::string name, std::string path, const BusUrl& url, const OpenOptions& options)
-      : name_(std::move(name)),
-        path_(std::move(path)),
-        error_frames_(options.error_frames),
-        filters_(!options.send_only),
-        session_(settings_of(url, options, filters_.rules()), random_nonce),
-        port_(std::in_place, path_, name_, base_rate_bps) {
-    session_.begin(steady_now());
-    flush();
-    thread_ = start_thread([this] { run(); });
-    try {
-      await_session(options.open_timeout);
-    } catch (...) {
-      end_thread();
-      throw;
-    }
-  }
-
-  SerialBus(const SerialBus&) = delete;
-  SerialBus& operator=(const SerialBus&) = delete;
-  ~SerialBus() override { close(); }
-
-  using Bus::receive;
-  using Bus::send;
-  Transfer send(std::span<const Frame> frames, Timeout timeout) override;
-  Transfer receive(std::span<Received> frames, Timeout timeout) override;
-  void set_filters(std::span<const SocketCanFilter> filters) override;
-  [[nodiscard]] int fd() const noexcept override { return queue_.readable().fd(); }
-  [[nodiscard]] BusState state() const override;
-  [[nodiscard]] Statistics statistics() const override;
-  void cancel() noexcept override { waits_.cancel(); }
-  void resume() noexcept override { waits_.resume(); }
-  void close() noexcept override;
-  [[nodiscard]] const std::string& name() const noexcept override { return name_; }
-
-  [[nodiscard]] BridgeInfo info() const override;
-  [[nodiscard]] BridgeLineCounters line_counters() const override;
-  [[nodiscard]] BridgeCounters counters(Timeout timeout) override;
-  void set_bus(std::uint32_t bitrate_bps, BridgeMode mode, Timeout timeout) override;
-  void set_address(std::optional<Address> address, Timeout timeout) override;
-  void identify(std::chrono::seconds duration, Timeout timeout) override;
-
- private:
-  using Lock = std::unique_lock<std::mutex>;
-  using Reply = SerialSession::Reply;
-
-  void await_session(Timeout timeout);
-  void end_thread();
-
-  // The caller holds mutex_ for these.
-  [[nodiscard]] bool is_ready() const { return session_.phase() == SerialSession::Phase::ready; }
-  void flush();
-  void deliver();
-  void enqueue(const Frame& frame, Timestamp time);
-  void follow_session();
-  void follow_controller();
-  template <typename Ask>
-  std::optional<Reply> await_reply(Lock& lock, Timeout timeout, const Ask& ask);
-  template <typename Ask>
-  void request(const std::string& what, Timeout timeout, const Ask& ask);
-
-  // The serving thread.
-  void run();
-  void serve();
-  void reopen();
-
-  const std::string name_;
-  const std::string path_;
-  const bool error_frames_;
-  EventFlag sendable_;  // room may have come since send() found none
-  EventFlag stop_;
-  EventFlag wake_;  // the serving thread is to look at the session
-  Waits waits_;
-
-  mutable std::mutex mutex_;
-  std::condition_variable changed_;  // anything that somebody may wait for
-  Filters filters_;
-  SerialSession session_;
-  std::optional<SerialPort> port_;  // replaced by the serving thread only
-  bool port_failed_ = false;
-  bool was_ready_ = false;  // when last looked at
-  ReceiveQueue queue_{receive_capacity};
-  std::uint64_t lost_before_us_ = 0;  // of the session's count, before open() returned
-  std::size_t waiting_seen_ = 0;      // in the session
-  Time awake_at_{0};                  // the serving thread, if nothing else wakes it
-  WallClock wall_clock_;
-  ControllerWatch controller_;
-  std::uint64_t counter_reports_seen_ = 0;
-  Statistics statistics_;
-  std::thread thread_;
-};
+}  // namespace
 
 // --- opening and closing -------------------------------------------------------------------------
 
-void SerialBus::await_session(Timeout timeout) {
-  const Deadline deadline(timeout);
-  Lock lock(mutex_);
-  while (!is_ready() && !trouble_of(session_, name_) && !deadline.passed()) {
-    changed_.wait_for(lock, bounded(deadline.remaining()));
+SerialBus::SerialBus(const BusUrl& url, const OpenOptions& options)
+    : name_("serial:" + url.target),
+      error_frames_(options.error_frames),
+      open_until_(std::max<Timeout>(options.open_timeout, least_open_time)),
+      opener_(name_, url.target),
+      path_(opener_.path()),
+      filters_(!options.send_only),
+      session_(settings_of(url, options, filters_.rules()), random_nonce) {
+  events_.look(BusState::absent, 0);
+  events_.forget();
+  thread_.start([this] { run(); });
+  if (!options.background) {
+    await_session();
   }
+}
+
+void SerialBus::await_session() {
+  Lock lock(mutex_);
+  changed_.wait(lock, [this] { return is_ready() || known_trouble(); });
   if (!is_ready()) {
-    const auto trouble = trouble_of(session_, name_);
-    throw trouble ? trouble->error : std::system_error(Errc::no_bridge, name_);
+    const std::system_error trouble = *known_trouble();
+    lock.unlock();
+    close();
+    throw trouble;
   }
   // What has come so far came while the bridge was being set up.
   static_cast<void>(session_.take_arrived());
@@ -158,30 +62,55 @@ void SerialBus::await_session(Timeout timeout) {
   lost_before_us_ = session_.lost();
   queue_.forget();
   statistics_ = {};
+  look_for_events();
+  events_.forget();
+}
+
+void SerialBus::begin_close() noexcept {
+  const std::lock_guard lock(mutex_);
+  if (waits_.is_closed()) {
+    return;
+  }
+  waits_.close();
+  closing_.emplace(close_time);
+  stop_.set();
+  wake_.set();
 }
 
 void SerialBus::close() noexcept {
-  {
-    Lock lock(mutex_);
-    if (waits_.is_closed()) {
-      return;
-    }
-    waits_.close();
-    changed_.notify_all();
-    changed_.wait_for(lock, close_time, [this] { return session_.all_done(); });
-    session_.drop_waiting();
-    await_reply(lock, bye_time, [this](SerialSession::Done done) {
-      session_.leave(steady_now(), std::move(done));
-    });
-    session_.end();
-  }
-  end_thread();
+  begin_close();
+  thread_.join();
 }
 
-void SerialBus::end_thread() {
-  stop_.set();
-  thread_.join();
-  port_.reset();
+/// Closed, and as far as there is a bridge, all has been handed over and BYE said, or the time for
+/// it is up.
+bool SerialBus::is_over() {
+  const std::lock_guard lock(mutex_);
+  answer_counters(false);
+  if (!closing_ || !port_) {
+    return closing_.has_value();
+  }
+  if (!leaving_ && (session_.all_done() || closing_->passed())) {
+    leaving_ = true;
+    closing_.emplace(bye_time);
+    session_.drop_waiting();
+    session_.leave(steady_now(), [this](const Reply&) { left_ = true; });
+    flush();
+  }
+  return left_ || (leaving_ && closing_->passed());
+}
+
+void SerialBus::finish() {
+  {
+    const std::lock_guard lock(mutex_);
+    session_.drop_waiting();
+    session_.end();
+    answer_counters(true);
+    port_.reset();
+    look_for_events();
+    changed_.notify_all();
+  }
+  events_.tell(&Events::closed);
 }
 
 // --- frames --------------------------------------------------------------------------------------
@@ -189,7 +118,7 @@ void SerialBus::end_thread() {
 Transfer SerialBus::send(std::span<const Frame> frames, Timeout timeout) {
   check_sendable(frames);
   return send_queued(
-      waits_, sendable_, frames, timeout,
+      waits_, events_, frames, timeout,
       [this](std::span<const Frame> rest) -> std::optional<std::size_t> {
         const std::lock_guard lock(mutex_);
         if (waits_.is_closed()) {
@@ -200,7 +129,7 @@ Transfer SerialBus::send(std::span<const Frame> frames, Timeout timeout) {
         waiting_seen_ = session_.waiting();
         flush();
         if (offered < rest.size()) {
-          sendable_.clear();
+          events_.clear_room();
         }
         return offered;
       },
@@ -228,24 +157,55 @@ Transfer SerialBus::receive(std::span<Received> frames, Timeout timeout) {
 }
 
 void SerialBus::set_filters(std::span<const SocketCanFilter> filters) {
+  Lock lock(mutex_);
+  // Without an answer, the next session begins with them.
+  await_reply(lock, filter_time, [this, filters](Done done) { take_filters(filters, done); });
+}
+
+void SerialBus::begin_set_filters(std::span<const SocketCanFilter> filters) {
+  const std::lock_guard lock(mutex_);
+  take_filters(filters, [this, number = filters_set_ + 1](const Reply&) {
+    if (number == filters_set_) {
+      events_.tell(&Events::filters);
+    }
+  });
+  flush();
+}
+
+void SerialBus::take_filters(std::span<const SocketCanFilter> filters, Done done) {
   if (filters.size() > Filters::max_count) {
     throw std::system_error(Errc::too_many_filters, name_);
   }
-  Lock lock(mutex_);
   filters_.set(filters);
-  // Without an answer, the next session begins with them.
-  await_reply(lock, filter_time, [this](SerialSession::Done done) {
-    session_.set_rules(filters_.rules(), steady_now(), std::move(done));
-  });
+  ++filters_set_;
+  session_.set_rules(filters_.rules(), steady_now(), std::move(done));
+}
+
+// --- what is known -------------------------------------------------------------------------------
+
+BusState SerialBus::known_state() const {
+  return is_ready() ? bus_state(session_.info().state) : BusState::absent;
 }
 
 BusState SerialBus::state() const {
   const std::lock_guard lock(mutex_);
-  return is_ready() ? bus_state(session_.info().state) : BusState::absent;
+  return known_state();
 }
 
-Statistics SerialBus::statistics() const {
+std::optional<std::system_error> SerialBus::known_trouble() const {
+  if (is_ready()) {
+    return std::nullopt;
+  }
+  const auto trouble = trouble_of(session_, name_);
+  return trouble ? trouble->error : trouble_;
+}
+
+std::optional<std::system_error> SerialBus::trouble() const {
   const std::lock_guard lock(mutex_);
+  return known_trouble();
+}
+
+Statistics SerialBus::all_statistics() const {
   Statistics statistics = statistics_;
   queue_.add_to(statistics);
   const DownFrames::Counters& down = session_.down();
@@ -255,10 +215,25 @@ Statistics SerialBus::statistics() const {
   return statistics;
 }
 
+Statistics SerialBus::statistics() const {
+  const std::lock_guard lock(mutex_);
+  return all_statistics();
+}
+
+void SerialBus::look_for_events() {
+  const Statistics statistics = all_statistics();
+  events_.look(known_state(), statistics.dropped + statistics.unsent + statistics.overruns);
+  const auto trouble = known_trouble();
+  const std::error_code code = trouble ? trouble->code() : std::error_code();
+  if (std::exchange(told_trouble_, code) != code) {
+    events_.tell(&Events::state);
+  }
+}
+
 // --- the serving thread --------------------------------------------------------------------------
 
 void SerialBus::run() {
-  while (!stop_.is_set()) {
+  while (!is_over()) {
     // Only this thread ends or replaces the port, so it may look without the lock.
     if (!port_) {
       reopen();
@@ -271,12 +246,15 @@ void SerialBus::run() {
       events = session_.output().empty() ? POLLIN : POLLIN | POLLOUT;
       awake_at_ = session_.deadline();
       patience_ms = poll_ms(awake_at_);
+      if (closing_ && (patience_ms < 0 || patience_ms > closing_->poll_ms())) {
+        patience_ms = closing_->poll_ms();
+      }
     }
-    std::array<pollfd, 3> entries{
-        {{port_->fd(), events, 0}, {wake_.fd(), POLLIN, 0}, {stop_.fd(), POLLIN, 0}}};
+    std::array<pollfd, 2> entries{{{port_->fd(), events, 0}, {wake_.fd(), POLLIN, 0}}};
     static_cast<void>(::poll(entries.data(), entries.size(), patience_ms));
     serve();
   }
+  finish();
 }
 
 void SerialBus::serve() {
@@ -292,7 +270,7 @@ void SerialBus::serve() {
 
 void SerialBus::reopen() {
   pollfd entry{stop_.fd(), POLLIN, 0};
-  if (::poll(&entry, 1, static_cast<int>(retry_interval.count())) != 0) {
+  if (::poll(&entry, 1, static_cast<int>(opener_.pause().count())) != 0) {
     return;
   }
   {
@@ -301,13 +279,21 @@ void SerialBus::reopen() {
     follow_session();
   }
   try {
-    SerialPort port(path_, name_, base_rate_bps);
+    SerialPort port = opener_.open(open_until_, stop_);
     const std::lock_guard lock(mutex_);
+    path_ = opener_.path();
     port_.emplace(std::move(port));
     session_.begin(steady_now());
     flush();
-  } catch (const std::system_error&) {
+    // Finding it may have taken all the time.
+    open_until_ = Deadline(std::max<Timeout>(open_until_.remaining(), least_open_time));
+    trouble_.reset();
+    look_for_events();
+  } catch (const std::system_error& error) {
     // Not plugged in yet, or somebody else has it: state() says absent.
+    const std::lock_guard lock(mutex_);
+    trouble_ = error;
+    follow_session();
   }
 }
 
@@ -316,12 +302,18 @@ void SerialBus::follow_session() {
   deliver();
   follow_controller();
   const bool became_ready = is_ready() && !was_ready_;
-  statistics_.outages += was_ready_ && !is_ready() ? 1U : 0U;
+  statistics_.outages += was_ready_ && !is_ready() && !leaving_ ? 1U : 0U;
   was_ready_ = is_ready();
+  if (is_ready()) {
+    trouble_.reset();
+  } else if (!trouble_ && open_until_.passed()) {
+    trouble_.emplace(Errc::no_bridge, name_);
+  }
   if (became_ready || session_.waiting() < waiting_seen_ || session_.all_done()) {
-    sendable_.set();
+    events_.set_room();
   }
   waiting_seen_ = session_.waiting();
+  look_for_events();
   changed_.notify_all();
 }
 
@@ -357,91 +349,10 @@ void SerialBus::follow_controller() {
   }
 }
 
-// --- the bridge ----------------------------------------------------------------------------------
-
-BridgeInfo SerialBus::info() const {
-  const std::lock_guard lock(mutex_);
-  BridgeInfo info = session_.info();
-  info.port = path_;
-  return info;
-}
-
-BridgeLineCounters SerialBus::line_counters() const {
-  const std::lock_guard lock(mutex_);
-  const SerialSession::Counters& line = session_.counters();
-  const DownFrames::Counters& down = session_.down();
-  return {line.sessions, line.damaged,       session_.lost(), down.resent,
-          line.retries,  line.failed_trials, line.step_downs, down.sent,
-          down.not_sent, down.unknown,       down.dropped,    session_.unsettled()};
-}
-
-BridgeCounters SerialBus::counters(Timeout timeout) {
-  Lock lock(mutex_);
-  const std::uint64_t before = session_.counter_reports();
-  session_.ask_counters(steady_now());
-  flush();
-  if (!changed_.wait_for(lock, bounded(timeout),
-                         [this, before] { return session_.counter_reports() != before; })) {
-    throw std::system_error(Errc::no_bridge, name_ + ": counters");
-  }
-  return session_.bridge_counters();
-}
-
-void SerialBus::set_bus(std::uint32_t bitrate_bps, BridgeMode mode, Timeout timeout) {
-  request(name_ + ": bit rate " + std::to_string(bitrate_bps) + ", mode " + to_string(mode),
-          timeout, [this, bitrate_bps, mode](SerialSession::Done done) {
-            session_.set_bus(bitrate_bps, mode, steady_now(), std::move(done));
-          });
-}
-
-void SerialBus::set_address(std::optional<Address> address, Timeout timeout) {
-  const Address to_set = address.value_or(broadcast_of(0));
-  request(name_ + ": address " + to_string(to_set), timeout,
-          [this, to_set](SerialSession::Done done) {
-            session_.set_address(to_set, steady_now(), std::move(done));
-          });
-}
-
-void SerialBus::identify(std::chrono::seconds duration, Timeout timeout) {
-  constexpr std::chrono::seconds longest{255};
-  const auto seconds = std::clamp(duration, std::chrono::seconds(0), longest);
-  request(name_ + ": identify", timeout, [this, seconds](SerialSession::Done done) {
-    session_.identify(static_cast<std::uint8_t>(seconds.count()), steady_now(), std::move(done));
-  });
-}
-
-/// Asks, and waits for the reply.
-template <typename Ask>
-std::optional<SerialSession::Reply> SerialBus::await_reply(Lock& lock, Timeout timeout,
-                                                           const Ask& ask) {
-  const auto reply = std::make_shared<std::optional<Reply>>();
-  ask([reply](const Reply& what) { *reply = what; });
-  flush();
-  changed_.wait_for(lock, bounded(timeout), [&reply] { return reply->has_value(); });
-  return *reply;
-}
-
-template <typename Ask>
-void SerialBus::request(const std::string& what, Timeout timeout, const Ask& ask) {
-  Lock lock(mutex_);
-  const Reply reply = await_reply(lock, timeout, ask).value_or(Reply{});
-  if (!reply.ok()) {
-    throw request_error(what, reply);
-  }
-}
-
-}  // namespace
 }  // namespace serial
 
 std::unique_ptr<Bus> open_serial(const BusUrl& url, const OpenOptions& options) {
-  const std::string name = "serial:" + url.target;
-  const Deadline deadline(options.open_timeout);
-  const bool find = url.target == "auto";
-  const std::string path = find ? serial::find_the_bridge(name, deadline.remaining()) : url.target;
-  if (serial::is_open_anywhere(path)) {
-    throw std::system_error(Errc::port_in_use, name);
-  }
-  return std::make_unique<serial::SerialBus>(name, path, url, options);
+  return std::make_unique<serial::SerialBus>(url, options);
 }
 
 }  // namespace roio

@@ -7,11 +7,13 @@
 #include <memory>
 #include <roio/bus.hpp>
 #include <roio/error.hpp>
+#include <roio/parts/bus_events.hpp>
 #include <roio/parts/fd.hpp>
 #include <roio/parts/waits.hpp>
 #include <string>
 #include <system_error>
 
+#include "socketcan/event_watch.hpp"
 #include "socketcan/link.hpp"
 #include "socketcan/receive.hpp"
 #include "socketcan/transmit.hpp"
@@ -40,10 +42,12 @@ UniqueFd watch(int first, int second, const std::string& name) {
 class SocketCanBus final : public Bus {
  public:
   SocketCanBus(const std::string& interface_name, const OpenOptions& options)
-      : link_(interface_name, options.send_only ? Filters() : Filters(everything)),
+      : link_(interface_name, options.send_only ? Filters() : Filters(everything), events_,
+              options.background),
         readable_(watch(link_.socket(), link_.news(), interface_name)),
+        event_watch_(link_, events_),
         receiver_(link_, waits_, options.error_frames),
-        transmitter_(link_, waits_) {}
+        transmitter_(link_, waits_, event_watch_) {}
 
   Transfer send(std::span<const Frame> frames, Timeout timeout) override {
     return waits_.is_closed() ? Transfer{Result::closed, 0} : transmitter_.send(frames, timeout);
@@ -61,8 +65,18 @@ class SocketCanBus final : public Bus {
     link_.set_filters(filters);
   }
 
+  void begin_set_filters(Filters filters) override {
+    set_filters(filters);
+    events_.tell(&Events::filters);
+  }
+
   [[nodiscard]] int fd() const noexcept override { return readable_.get(); }
+  [[nodiscard]] int event_fd() const noexcept override { return event_watch_.fd(); }
+  Events take_events() override { return event_watch_.take(); }
   [[nodiscard]] BusState state() const override { return link_.state(); }
+  [[nodiscard]] std::optional<std::system_error> trouble() const override {
+    return link_.trouble();
+  }
 
   [[nodiscard]] Statistics statistics() const override {
     Statistics statistics;
@@ -78,17 +92,23 @@ class SocketCanBus final : public Bus {
   // The kernel has what send() accepted, and sends it whatever becomes of the socket. The socket
   // itself lives as long as the object, for calls in other threads that are just returning.
   void close() noexcept override {
-    waits_.close();
-    link_.mute();
+    if (!waits_.is_closed()) {
+      waits_.close();
+      link_.mute();
+      events_.tell(&Events::closed);
+    }
   }
+  void begin_close() noexcept override { close(); }
 
   [[nodiscard]] const std::string& name() const noexcept override { return link_.name(); }
 
  private:
+  BusEvents events_;
   // Looking at the interface takes note of what it finds.
   mutable socketcan::Link link_;
   Waits waits_;
   UniqueFd readable_;
+  socketcan::EventWatch event_watch_;
   socketcan::Receiver receiver_;
   socketcan::Transmitter transmitter_;
 };

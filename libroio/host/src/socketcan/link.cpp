@@ -10,29 +10,42 @@
 
 namespace roio::socketcan {
 
-Link::Link(std::string name, std::span<const SocketCanFilter> filters)
+namespace {
+
+/// What is wrong with an interface that was found; none: nothing.
+std::optional<Errc> trouble_with(const InterfaceLook& found) {
+  if (found.index == 0) {
+    return Errc::no_such_interface;
+  }
+  return found.is_can ? std::nullopt : std::optional(Errc::not_a_can_interface);
+}
+
+}  // namespace
+
+Link::Link(std::string name, std::span<const SocketCanFilter> filters, BusEvents& events,
+           bool may_be_absent)
     : name_(std::move(name)),
+      events_(events),
       socket_(make_socket(name_)),
       news_(make_news_socket(name_)),
       filters_(filters.begin(), filters.end()) {
   const InterfaceLook found = look_at(socket(), name_);
-  if (found.index == 0) {
-    throw std::system_error(Errc::no_such_interface, name_);
-  }
-  if (!found.is_can) {
-    throw std::system_error(Errc::not_a_can_interface, name_);
+  const auto trouble = trouble_with(found);
+  if (trouble && !may_be_absent) {
+    throw std::system_error(*trouble, name_);
   }
   int error = apply_filters(socket(), filters_);
-  if (error == 0) {
+  if (error == 0 && !trouble) {
     error = bind_to(socket(), found.index);
   }
   if (error != 0) {
     throw std::system_error(error, std::generic_category(), name_);
   }
   // An interface that is down from the start is no outage; binding to it leaves an error behind.
-  interface_ = found.up ? Interface::up : Interface::down;
+  interface_ = found.up && !trouble ? Interface::up : Interface::down;
   static_cast<void>(take_error(socket()));
   look();
+  events_.forget();
 }
 
 void Link::look() {
@@ -63,6 +76,17 @@ void Link::read_news() {
 BusState Link::state() {
   const std::lock_guard lock(mutex_);
   look_locked();
+  return state_locked();
+}
+
+std::optional<std::system_error> Link::trouble() {
+  const std::lock_guard lock(mutex_);
+  look_locked();
+  const auto trouble = trouble_with(look_at(socket(), name_));
+  return trouble ? std::optional(std::system_error(*trouble, name_)) : std::nullopt;
+}
+
+BusState Link::state_locked() const {
   switch (interface_) {
     case Interface::up:
       return controller_;
@@ -93,6 +117,7 @@ void Link::look_locked() {
   }
   carrier_ = found.carrier;
   update_usable();
+  tell_news();
 }
 
 bool Link::bind_locked(int interface_index) {
@@ -119,7 +144,18 @@ void Link::set_interface(Interface now) {
 
 void Link::update_usable() {
   const bool usable = interface_ == Interface::up && carrier_ && controller_ != BusState::bus_off;
-  usable_.store(usable, std::memory_order_relaxed);
+  if (usable_.exchange(usable, std::memory_order_relaxed) == usable) {
+    return;
+  }
+  if (usable) {
+    events_.set_room();
+  } else {
+    events_.clear_room();
+  }
+}
+
+void Link::tell_news() {
+  events_.look(state_locked(), dropped_ + overruns_);
 }
 
 void Link::report(const Frame& error) {
@@ -130,6 +166,7 @@ void Link::report(const Frame& error) {
   overruns_ += report.overrun ? 1U : 0U;
   controller_ = report.state;
   update_usable();
+  tell_news();
 }
 
 void Link::set_filters(std::span<const SocketCanFilter> filters) {
@@ -153,11 +190,21 @@ void Link::mute() noexcept {
   socketcan::mute(socket());
 }
 
-void Link::fill(Statistics& statistics) {
+void Link::count_lost() {
   const std::lock_guard lock(mutex_);
+  count_lost_locked();
+}
+
+void Link::count_lost_locked() {
   if (const auto drops = count_drops(socket())) {
     dropped_ += static_cast<std::uint32_t>(*drops - static_cast<std::uint32_t>(dropped_));
   }
+  tell_news();
+}
+
+void Link::fill(Statistics& statistics) {
+  const std::lock_guard lock(mutex_);
+  count_lost_locked();
   statistics.dropped = dropped_;
   statistics.error_frames = error_frames_;
   statistics.bus_offs = bus_offs_;

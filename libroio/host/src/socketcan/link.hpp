@@ -5,11 +5,14 @@
 #include <chrono>
 #include <cstdint>
 #include <mutex>
+#include <optional>
 #include <roio/bus.hpp>
 #include <roio/frame.hpp>
+#include <roio/parts/bus_events.hpp>
 #include <roio/parts/fd.hpp>
 #include <span>
 #include <string>
+#include <system_error>
 #include <vector>
 
 namespace roio::socketcan {
@@ -19,9 +22,12 @@ namespace roio::socketcan {
 /// so its queue and its drop count do too. Safe in any thread.
 class Link {
  public:
+  /// @param events are told what happens to it.
+  /// @param may_be_absent waits for the interface; else it must be there.
   /// @throws std::system_error naming the interface: Errc::no_can_support, no_such_interface,
   ///         not_a_can_interface, or the system's own.
-  Link(std::string name, std::span<const SocketCanFilter> filters);
+  Link(std::string name, std::span<const SocketCanFilter> filters, BusEvents& events,
+       bool may_be_absent);
 
   [[nodiscard]] const std::string& name() const noexcept { return name_; }
   [[nodiscard]] int socket() const noexcept { return socket_.get(); }
@@ -42,6 +48,8 @@ class Link {
   [[nodiscard]] bool usable() const noexcept { return usable_.load(std::memory_order_relaxed); }
   /// Looks first.
   [[nodiscard]] BusState state();
+  /// Looks first. Why there is no such interface; none: there is one.
+  [[nodiscard]] std::optional<std::system_error> trouble();
 
   /// Decodes an error report (FrameKind::error) into state and counts.
   void report(const Frame& error);
@@ -51,6 +59,8 @@ class Link {
   /// Receives nothing from now on, error reports included, and never again.
   void mute() noexcept;
 
+  /// The kernel may have had no room for frames.
+  void count_lost();
   /// Writes dropped, error_frames, bus_offs, outages and overruns.
   void fill(Statistics& statistics);
 
@@ -62,8 +72,12 @@ class Link {
   [[nodiscard]] bool bind_locked(int interface_index);
   void set_interface(Interface now);
   void update_usable();
+  void count_lost_locked();
+  [[nodiscard]] BusState state_locked() const;
+  void tell_news();
 
   const std::string name_;
+  BusEvents& events_;
   const UniqueFd socket_;
   const UniqueFd news_;
 

@@ -63,11 +63,20 @@ std::size_t Receiver::take(std::span<Received> frames) {
     for (std::size_t slot = 0; slot < taken; ++slot) {
       count += accept(slot, frames[count]) ? 1U : 0U;
     }
+    taken_in_a_row_ += taken;
     if (taken < wanted) {
+      note_end_of_queue();
       break;
     }
   }
   return count;
+}
+
+// What finds the queue full, at its end no frame tells of. A queue of one frame was not full.
+void Receiver::note_end_of_queue() {
+  if (std::exchange(taken_in_a_row_, 0) > 1) {
+    link_.count_lost();
+  }
 }
 
 std::size_t Receiver::take_batch(std::size_t wanted) {

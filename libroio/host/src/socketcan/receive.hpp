@@ -41,6 +41,7 @@ class Receiver {
   [[nodiscard]] Result wait(Timeout timeout);
   [[nodiscard]] std::size_t take(std::span<Received> frames);
   [[nodiscard]] std::size_t take_batch(std::size_t wanted);
+  void note_end_of_queue();
   [[nodiscard]] bool accept(std::size_t slot, Received& received);
   void read_control(const msghdr& header, Timestamp& time);
 
@@ -51,8 +52,9 @@ class Receiver {
   std::array<iovec, batch_size> vectors_{};
   std::array<Control, batch_size> controls_{};
   std::array<mmsghdr, batch_size> messages_{};
-  std::uint32_t drops_ = 0;        // the kernel's count with the last frame
-  std::uint64_t lost_before_ = 0;  // owed to the next frame that is returned
+  std::size_t taken_in_a_row_ = 0;  // since the queue was empty
+  std::uint32_t drops_ = 0;         // the kernel's count with the last frame
+  std::uint64_t lost_before_ = 0;   // owed to the next frame that is returned
   std::atomic<std::uint64_t> received_{0};
   std::atomic<std::uint64_t> fd_frames_{0};
 };

@@ -20,8 +20,8 @@ constexpr Timeout between_looks = std::chrono::milliseconds(50);
 
 }  // namespace
 
-Transmitter::Transmitter(Link& link, const Waits& waits)
-    : link_(link), waits_(waits), back_off_(first_back_off) {
+Transmitter::Transmitter(Link& link, const Waits& waits, EventWatch& events)
+    : link_(link), waits_(waits), events_(events), back_off_(first_back_off) {
   for (std::size_t i = 0; i < batch_size; ++i) {
     vectors_[i] = {&frames_[i], sizeof frames_[i]};
     messages_[i].msg_hdr.msg_iov = &vectors_[i];
@@ -55,10 +55,13 @@ Transfer Transmitter::send(std::span<const Frame> frames, Timeout timeout) {
   if (woken == Result::timeout) {
     timeouts_.fetch_add(1, std::memory_order_relaxed);
   }
+  if (woken != Result::closed) {
+    events_.expect_room(obstacle);
+  }
   return {woken, count};
 }
 
-Transmitter::Obstacle Transmitter::offer(std::span<const Frame> frames, std::size_t& count) {
+Obstacle Transmitter::offer(std::span<const Frame> frames, std::size_t& count) {
   Obstacle obstacle = Obstacle::none;
   std::size_t taken = 0;
   while (obstacle == Obstacle::none && count + taken < frames.size()) {
@@ -73,7 +76,7 @@ Transmitter::Obstacle Transmitter::offer(std::span<const Frame> frames, std::siz
   return obstacle;
 }
 
-Transmitter::Obstacle Transmitter::offer_batch(std::span<const Frame> frames, std::size_t& taken) {
+Obstacle Transmitter::offer_batch(std::span<const Frame> frames, std::size_t& taken) {
   if (!link_.usable()) {
     return Obstacle::unusable;
   }

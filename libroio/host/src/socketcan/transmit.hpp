@@ -14,6 +14,7 @@
 #include <roio/parts/waits.hpp>
 #include <span>
 
+#include "socketcan/event_watch.hpp"
 #include "socketcan/link.hpp"
 
 namespace roio::socketcan {
@@ -21,7 +22,7 @@ namespace roio::socketcan {
 /// The sending side of a link, for one thread at a time (fill() for any).
 class Transmitter {
  public:
-  Transmitter(Link& link, const Waits& waits);
+  Transmitter(Link& link, const Waits& waits, EventWatch& events);
 
   /// Bus::send().
   Transfer send(std::span<const Frame> frames, Timeout timeout);
@@ -31,14 +32,6 @@ class Transmitter {
 
  private:
   static constexpr std::size_t batch_size = 32;  // frames in one system call
-
-  /// Why the kernel took no more.
-  enum class Obstacle : std::uint8_t {
-    none,
-    socket_full,  ///< poll() tells when there is room.
-    queue_full,   ///< The interface's queue, filled by others too: nothing tells.
-    unusable,     ///< No interface, or it is down or bus-off.
-  };
 
   /// Offers the frames from `count` on; moves it past those that were taken.
   [[nodiscard]] Obstacle offer(std::span<const Frame> frames, std::size_t& count);
@@ -51,6 +44,7 @@ class Transmitter {
 
   Link& link_;
   const Waits& waits_;
+  EventWatch& events_;
   std::array<can_frame, batch_size> frames_{};
   std::array<iovec, batch_size> vectors_{};
   std::array<mmsghdr, batch_size> messages_{};

@@ -4,6 +4,7 @@
 #include <iostream>
 #include <roio.hpp>
 #include <roio/json.hpp>
+#include <roio/parts/bus_events.hpp>
 #include <roio/parts/fd.hpp>
 #include <roio/parts/queued_calls.hpp>
 #include <roio/parts/receive_queue.hpp>
@@ -30,17 +31,22 @@ class EchoBus final : public roio::Bus {
                                 });
   }
   void set_filters(std::span<const roio::SocketCanFilter>) override {}
+  void begin_set_filters(std::span<const roio::SocketCanFilter>) override {}
   [[nodiscard]] int fd() const noexcept override { return queue_.readable().fd(); }
+  [[nodiscard]] int event_fd() const noexcept override { return events_.fd(); }
+  roio::Events take_events() override { return events_.take(); }
   [[nodiscard]] roio::BusState state() const override { return roio::BusState::active; }
   [[nodiscard]] roio::Statistics statistics() const override { return {}; }
   void cancel() noexcept override { waits_.cancel(); }
   void resume() noexcept override { waits_.resume(); }
   void close() noexcept override { waits_.close(); }
+  void begin_close() noexcept override { close(); }
   [[nodiscard]] const std::string& name() const noexcept override { return name_; }
 
  private:
   std::string name_ = "echo";
   roio::Waits waits_;
+  roio::BusEvents events_;
   roio::ReceiveQueue queue_{4};
 };
 

@@ -10,6 +10,7 @@
 #include <cstddef>
 #include <optional>
 #include <roio/bus.hpp>
+#include <roio/parts/bus_events.hpp>
 #include <roio/parts/deadline.hpp>
 #include <roio/parts/fd.hpp>
 #include <roio/parts/waits.hpp>
@@ -47,13 +48,15 @@ Transfer receive_queued(const Waits& waits, const EventFlag& readable, std::span
 /// Bus::send(): offers the frames, and those left over again whenever there may be room.
 /// @param frames checked already: check_sendable().
 /// @param offer std::optional<std::size_t>(std::span<const Frame>): how many of the frames it has
-///        accepted, from the first; none: the bus is closed. If not all, it has cleared `sendable`,
-///        under the lock under which it found no room; who makes room sets it. Called once or more.
+///        accepted, from the first; none: the bus is closed. If not all, it has called
+///        BusEvents::clear_room(), under the lock under which it found none; who makes room calls
+///        set_room(). Called once or more.
 /// @param count void(bool): told each time that it waits (false), and when it gives up at its
 ///        deadline (true), for Statistics::send_waits and send_timeouts.
-/// @return ok when all were accepted; else the first Transfer::count were.
+/// @return ok when all were accepted; else the first Transfer::count were, and `events` tells when
+///         there is room for more.
 template <typename Offer, typename Count>
-Transfer send_queued(const Waits& waits, const EventFlag& sendable, std::span<const Frame> frames,
+Transfer send_queued(const Waits& waits, BusEvents& events, std::span<const Frame> frames,
                      Timeout timeout, const Offer& offer, const Count& count) {
   const Deadline deadline(timeout);
   // Once at least, however late this process may be by now: what is counted goes by what was asked.
@@ -69,13 +72,15 @@ Transfer send_queued(const Waits& waits, const EventFlag& sendable, std::span<co
       return {Result::ok, sent};
     }
     if (waits.is_cancelled()) {
+      events.expect_room();
       return {Result::cancelled, sent};
     }
     count(!may_wait);
     if (!may_wait) {
+      events.expect_room();
       return {Result::timeout, sent};
     }
-    static_cast<void>(waits.wait({sendable.fd(), POLLIN}, deadline.remaining()));
+    static_cast<void>(waits.wait({events.room().fd(), POLLIN}, deadline.remaining()));
     may_wait = !deadline.passed();
   }
 }

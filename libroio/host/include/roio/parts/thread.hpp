@@ -4,6 +4,7 @@
 #include <pthread.h>
 
 #include <csignal>
+#include <mutex>
 #include <thread>
 #include <utility>
 
@@ -36,6 +37,32 @@ std::thread start_thread(Function&& function) {
   const SignalsBlocked blocked;
   return std::thread(std::forward<Function>(function));
 }
+
+/// Such a thread, which several threads may wait for at once: those that call close().
+class SharedThread {
+ public:
+  SharedThread() = default;
+  SharedThread(const SharedThread&) = delete;
+  SharedThread& operator=(const SharedThread&) = delete;
+  ~SharedThread() { join(); }
+
+  /// Once. As start_thread().
+  template <typename Function>
+  void start(Function&& function) {
+    thread_ = start_thread(std::forward<Function>(function));
+  }
+  /// Returns when it has ended, or was never started. Not from itself.
+  void join() noexcept {
+    const std::lock_guard lock(mutex_);
+    if (thread_.joinable()) {
+      thread_.join();
+    }
+  }
+
+ private:
+  std::mutex mutex_;
+  std::thread thread_;
+};
 
 }  // namespace roio
 
