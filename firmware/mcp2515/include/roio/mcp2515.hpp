@@ -169,6 +169,9 @@ struct Mcp2515Traits {
   /// Six normal frames follow one another without a gap before the chip runs empty, in place of
   /// two: for a node that fills the bus. Costs 2 SPI bytes more with each frame.
   static constexpr bool back_to_back = false;
+  /// Whether an interrupt line may turn out not to be connected. If not, the Port has to see to it
+  /// that a line that is off counts as low.
+  static constexpr bool doubts_line = true;
   /// Whether anybody wants to know what became of each frame. If not, there are no tokens, no
   /// abort() and no one-shot mode, and the driver does not ask the chip just for that.
   static constexpr bool reports_outcomes = false;
@@ -333,7 +336,7 @@ class Mcp2515 {
   /// Bases, since most often these are empty.
   struct Requests : mcp2515::Requests<Traits::reports_outcomes>,
                     Order,
-                    mcp2515::Line<Port::has_interrupt_line> {};
+                    mcp2515::Line<Port::has_interrupt_line, Traits::doubts_line> {};
 
   static bool is_urgent(const Mcp2515Frame& frame) {
     return (frame.bytes[0] & mcp2515::priority_bit) == 0 &&
