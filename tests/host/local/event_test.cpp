@@ -74,7 +74,8 @@ TEST_F(LocalEvents, NoCallWaitsForAStoppedCarrier) {
   EXPECT_EQ(bus->receive(received, no_wait), Result::timeout);
   bus->begin_set_filters({});
   EXPECT_TRUE(next_events(*bus).filters);
-  const auto late = open(url_, {.background = true, .carry = Carry::never});
+  const auto late =
+      open(url_, {.open_timeout = forever, .background = true, .carry = Carry::never});
   EXPECT_EQ(late->state(), BusState::absent);
   late->begin_close();
   await_state(*bus, BusState::down);

@@ -127,7 +127,7 @@ TEST(BridgeRequests, HaveALimit) {
 
 TEST(SerialEvents, ADeafBridgeIsWaitedForByNoCall) {
   PtyBridge pty(false);
-  const auto bus = open("serial:" + pty.path(), {.background = true});
+  const auto bus = open("serial:" + pty.path(), {.open_timeout = forever, .background = true});
   EXPECT_EQ(bus->state(), BusState::absent);
   EXPECT_EQ(bus->send(Frame{1, FrameKind::extended, 0, {}}, no_wait), Result::timeout);
   bus->begin_set_filters({});

@@ -89,6 +89,7 @@ void LocalBus::finish() {
     settle();
     statistics_.unsent += outbox_.size();
     look_for_events();
+    inbox_.end();
   }
   connector_.end_presence();
   {
@@ -307,7 +308,7 @@ void LocalBus::work() {
   inbox_.fetch();
   settle();
   // The hub may have answered the last time with what was known already.
-  if (sender_waits_ || (closing_ && outbox_.size() > 0)) {
+  if (sender_waits_ || outbox_.has_more() || (closing_ && outbox_.size() > 0)) {
     ask_for_done();
   }
   if (link_) {
@@ -359,6 +360,7 @@ void LocalBus::note_trouble(const std::system_error& trouble) {
 
 void LocalBus::adopt(Connection connection) {
   settle();  // by the memory before, if this is another
+  outbox_.settle(inbox_.carried_before(connection.welcome));
   inbox_.adopt(std::move(connection.memory), connection.welcome);
   settle();
   outbox_.begin(connection.welcome.window);

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cerrno>
 #include <chrono>
 #include <random>
 #include <roio/error.hpp>
@@ -96,37 +97,45 @@ bool Connector::is_between_hubs() const {
                      [](const std::string& path) { return MemoryView(path).has_clients(); });
 }
 
-/// @throws Errc::carried_already.
-bool Connector::is_to_ask_for_the_seat(const Place::Hub& hub) const {
-  if (carry_ != Carry::always || hub.process == ::getpid()) {
-    return false;
+/// @return Hello::host. @throws Errc::carried_already: another is there, and has been since open().
+std::uint16_t Connector::wish_for_the_seat(const Place::Hub& hub) const {
+  if (carry_ != Carry::always) {
+    return 0;
   }
   const std::uint64_t host = MemoryView(hub.lock_path).host();
   if (host != 0 && host != client_) {
-    throw std::system_error(Errc::carried_already,
-                            "local:" + bus_name_ + ": " + describe_process(hub.process));
+    if (!was_connected_) {
+      throw std::system_error(Errc::carried_already,
+                              "local:" + bus_name_ + ": " + describe_process(hub.process));
+    }
+    return 0;
   }
-  return true;
+  return hub.process == ::getpid() ? Hello::has_the_seat : Hello::wants_the_seat;
 }
 
 std::system_error Connector::why_not() const {
   const std::string name = "local:" + bus_name_;
-  return silent_hub_ && is_stopped(*silent_hub_)
-             ? std::system_error(Errc::carrier_stopped,
-                                 name + ": " + describe_process(*silent_hub_))
+  std::optional<pid_t> carrier = silent_hub_;
+  if (!carrier) {  // it may be so silent that it does not even take connections
+    for (const std::string& path : place_.lock_paths()) {
+      const MemoryView memory(path);
+      carrier = memory.has_clients() ? std::optional(memory->header.process.load()) : carrier;
+    }
+  }
+  return carrier && is_stopped(*carrier)
+             ? std::system_error(Errc::carrier_stopped, name + ": " + describe_process(*carrier))
              : std::system_error(Errc::not_connected, name);
 }
 
 std::optional<Connection> Connector::greet(Place::Hub hub, const EventFlag& stop) {
   static_assert(sizeof(Welcome) >= sizeof(Refused), "read before it is known which one comes");
-  const bool ask = is_to_ask_for_the_seat(hub);
+  const std::uint16_t wish = wish_for_the_seat(hub);
   if (!presence_.is_at(hub.lock_path)) {
     presence_ = Presence(hub.lock_path, client_);
   }
   Stream stream(std::move(hub.socket));
   append_record(stream.out(),
-                Hello{magic, protocol_version, ask ? std::uint16_t{1} : std::uint16_t{0}, client_,
-                      bitrate_bps_.value_or(0), 0});
+                Hello{magic, protocol_version, wish, client_, bitrate_bps_.value_or(0), 0});
   if (!presence_.shown() || !stream.flush() || !stream.flushed()) {
     return std::nullopt;  // that hub is leaving
   }
@@ -151,7 +160,10 @@ std::optional<Connection> Connector::greet(Place::Hub hub, const EventFlag& stop
   if (record.type == RecordType::refused) {
     throw_refused(record.as<Refused>());
   }
-  if (record.type != RecordType::welcome || !wake) {
+  if (record.type == RecordType::welcome && !wake) {
+    throw std::system_error(EMFILE, std::generic_category(), "local:" + bus_name_);
+  }
+  if (record.type != RecordType::welcome) {
     throw std::system_error(Errc::version_mismatch, "local:" + bus_name_);
   }
   const auto welcome = record.as<Welcome>();
@@ -161,6 +173,7 @@ std::optional<Connection> Connector::greet(Place::Hub hub, const EventFlag& stop
   if (welcome.bitrate_bps != 0) {
     bitrate_bps_ = welcome.bitrate_bps;  // a hub that we may have to start goes on at the same rate
   }
+  was_connected_ = true;
   ClientMemory memory(presence_.fd(), welcome.slot);
   return Connection{std::move(stream), std::move(memory), std::move(wake), welcome, hub.process};
 }

@@ -53,7 +53,7 @@ class Connector {
   void leave() { hub_.reset(); }
 
  private:
-  [[nodiscard]] bool is_to_ask_for_the_seat(const Place::Hub& hub) const;
+  [[nodiscard]] std::uint16_t wish_for_the_seat(const Place::Hub& hub) const;
   [[nodiscard]] bool may_claim(const Deadline& others_first) const;
   [[nodiscard]] bool is_between_hubs() const;
   std::optional<Connection> greet(Place::Hub hub, const EventFlag& stop);
@@ -65,7 +65,8 @@ class Connector {
   std::uint64_t client_;
   Place place_;
   std::unique_ptr<Hub> hub_;
-  Presence presence_;                // from the first hub to the last
+  Presence presence_;  // from the first hub to the last
+  bool was_connected_ = false;
   std::optional<pid_t> silent_hub_;  // the one that did not answer
 };
 

@@ -1,6 +1,7 @@
 #include "local/hub.hpp"
 
 #include <sys/socket.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cerrno>
@@ -41,6 +42,7 @@ Hub::Hub(HubSeat seat, std::optional<std::uint32_t> bitrate_bps, std::uint64_t h
     memory_.set_up(bitrate_bps.value_or(0));
   }
   memory_->header.hubs.fetch_add(1, std::memory_order_relaxed);
+  memory_->header.process.store(::getpid(), std::memory_order_relaxed);
   if (host != 0) {
     memory_->header.host.store(host, std::memory_order_relaxed);
   }
@@ -86,7 +88,7 @@ void Hub::note_done_from_log() {
     slots.emplace(slot.client.load(std::memory_order_relaxed), &slot);
   }
   const std::uint64_t head = memory_->header.head.load(std::memory_order_relaxed);
-  for (std::uint64_t i = head >= log_size ? head - log_size + 2 : 1; i <= head; ++i) {
+  for (std::uint64_t i = first_whole(head); i <= head; ++i) {
     const Carried carried = load(entry_of(*memory_, i));
     const auto sender = slots.find(carried.sender);
     if (sender != slots.end() && carried.lane < lane_count) {
@@ -258,11 +260,16 @@ void Hub::greet(HubClient& client, const Hello& hello) {
     refuse(Errc::bitrate_mismatch);
   } else if (!is_present(seat_.lock_fd(), hello.client)) {
     cut(client);
-  } else if (hello.host != 0) {
+  } else if (hello.host == Hello::wants_the_seat && has_host_but(hello.client)) {
+    refuse(Errc::carried_already);
+  } else if (hello.host == Hello::wants_the_seat) {
     // Its seat from now on. This hub goes, and that client finds it free.
     memory_->header.host.store(hello.client, std::memory_order_seq_cst);
     is_over_ = true;
   } else if (const bool fresh = !slot_of(hello.client); auto slot = give_slot(hello.client)) {
+    if (hello.host == Hello::has_the_seat && !has_host_but(hello.client)) {
+      memory_->header.host.store(hello.client, std::memory_order_seq_cst);
+    }
     medium_->drop_station_of(hello.client);
     auto station = std::make_shared<Station>(hello.client, *slot);
     const Welcome welcome{memory_->header.identity.load(std::memory_order_relaxed),
@@ -277,6 +284,11 @@ void Hub::greet(HubClient& client, const Hello& hello) {
   } else {
     refuse(Errc::bus_full);
   }
+}
+
+bool Hub::has_host_but(std::uint64_t client) const {
+  const std::uint64_t host = memory_->header.host.load(std::memory_order_relaxed);
+  return host != 0 && host != client && is_present(seat_.lock_fd(), host);
 }
 
 std::optional<std::size_t> Hub::slot_of(std::uint64_t client) const {
@@ -295,11 +307,16 @@ std::optional<std::size_t> Hub::give_slot(std::uint64_t client) {
     for (const auto& other : clients_) {
       if (other->greeted() && other->slot() == *slot) {
         cut(*other);
+        let_go(*other);
       }
     }
     return slot;
   }
-  const auto index = slot_of(0);
+  auto index = slot_of(0);
+  if (!index) {
+    free_slots_of_the_dead();
+    index = slot_of(0);
+  }
   if (index) {
     Slot& slot = memory_->slots.at(*index);
     for (auto& done : slot.done) {
@@ -378,6 +395,11 @@ void Hub::transmit() {
 
 void Hub::carry(const Medium::Transmission& transmission, std::size_t listeners) {
   const auto& [from, offer, lane, end] = transmission;
+  Slot& slot = memory_->slots.at(from->slot());
+  const bool is_there = slot.client.load(std::memory_order_relaxed) == from->sender();
+  if (is_there && offer.sequence <= slot.done.at(lane).load(std::memory_order_relaxed)) {
+    return;  // a client that has come back had offered it twice
+  }
   std::atomic<std::uint64_t>& head = memory_->header.head;
   const std::uint64_t number = head.load(std::memory_order_relaxed) + 1;
   if (number > log_size) {
@@ -388,8 +410,7 @@ void Hub::carry(const Medium::Transmission& transmission, std::size_t listeners)
   store(entry_of(*memory_, number),
         {from->sender(), offer.sequence, lane, time_ns, to_wire(offer.frame)});
   head.store(number, std::memory_order_seq_cst);
-  Slot& slot = memory_->slots.at(from->slot());
-  if (slot.client.load(std::memory_order_relaxed) != from->sender()) {
+  if (!is_there) {
     return;  // its client has gone
   }
   // Before it is done: who then looks knows.
@@ -402,15 +423,20 @@ void Hub::carry(const Medium::Transmission& transmission, std::size_t listeners)
   }
 }
 
+// Once; the slot may have another connection by the time the client itself is dropped.
+void Hub::let_go(HubClient& client) {
+  if (const auto station = client.end()) {
+    readers_.set_wake(client.slot(), nullptr);
+    medium_->detach(station);
+  }
+}
+
 void Hub::drop_closed_clients() {
   const auto closed = [this](const std::unique_ptr<HubClient>& client) {
     if (client->stream().open()) {
       return false;
     }
-    if (client->greeted()) {
-      readers_.set_wake(client->slot(), nullptr);
-      medium_->detach(client->station());
-    }
+    let_go(*client);
     return true;
   };
   if (std::erase_if(clients_, closed) > 0) {
@@ -430,6 +456,7 @@ void Hub::leave() noexcept {
   for (const auto& client : clients_) {
     cut(*client);
   }
+  clients_.clear();
 }
 
 }  // namespace roio::local

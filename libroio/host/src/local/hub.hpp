@@ -63,9 +63,11 @@ class Hub {
   void greet(HubClient& client, const Hello& hello);
   void take_frame(HubClient& client, const OfferedFrame& offered);
   void cut(HubClient& client) noexcept;
+  void let_go(HubClient& client);
   void drop_closed_clients();
 
   // Slots.
+  [[nodiscard]] bool has_host_but(std::uint64_t client) const;
   [[nodiscard]] std::optional<std::size_t> slot_of(std::uint64_t client) const;
   std::optional<std::size_t> give_slot(std::uint64_t client);
   void free_slots_of_the_dead();

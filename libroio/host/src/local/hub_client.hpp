@@ -30,6 +30,9 @@ class HubClient {
   bool welcome(std::shared_ptr<Station> station, std::size_t slot, const Welcome& welcome);
   void refuse(const Refused& refused);
 
+  /// It is let go. @return its station; null when it has been already, or never greeted.
+  std::shared_ptr<Station> end() { return std::exchange(station_, nullptr); }
+
   // Once greeted.
   [[nodiscard]] const std::shared_ptr<Station>& station() const { return station_; }
   [[nodiscard]] std::size_t slot() const { return slot_; }

@@ -34,8 +34,22 @@ void Inbox::adopt(ClientMemory memory, const Welcome& welcome) {
 void Inbox::finish_log() {
   while (fetch()) {
   }
-  before_.dropped += log_->reader.dropped();
-  before_.unheard += log_->memory.slot().unheard.load(std::memory_order_relaxed);
+  end();
+}
+
+void Inbox::end() {
+  if (log_) {
+    before_.dropped += log_->reader.dropped();
+    before_.unheard += log_->memory.slot().unheard.load(std::memory_order_relaxed);
+    log_.reset();
+  }
+}
+
+// A hub that was killed may have carried the last ones and not said so, and no other hub looks
+// through this log any more.
+std::array<std::uint64_t, lane_count> Inbox::carried_before(const Welcome& welcome) const {
+  return log_ && log_->identity != welcome.identity ? last_carried(*log_->memory, client_)
+                                                    : std::array<std::uint64_t, lane_count>{};
 }
 
 void Inbox::set_filters(std::span<const SocketCanFilter> filters) {

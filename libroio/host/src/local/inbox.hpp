@@ -1,6 +1,7 @@
 #ifndef ROIO_LOCAL_INBOX_HPP
 #define ROIO_LOCAL_INBOX_HPP
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -26,6 +27,11 @@ class Inbox {
   /// Another hub has let the client in. @param memory of the bus; left alone where it is the one
   /// that the client had.
   void adopt(ClientMemory memory, const Welcome& welcome);
+  /// The bus is left: the slot may be another client's from now on. Before the presence ends.
+  void end();
+  /// Up to where the client's own frames are in a log that is to be left for that of `welcome`; 0:
+  /// it is not to be left.
+  [[nodiscard]] std::array<std::uint64_t, lane_count> carried_before(const Welcome& welcome) const;
   /// From now on what any of these accepts.
   void set_filters(std::span<const SocketCanFilter> filters);
 

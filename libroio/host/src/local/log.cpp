@@ -43,6 +43,18 @@ Carried load(const LogEntry& entry) noexcept {
   return carried;
 }
 
+std::array<std::uint64_t, lane_count> last_carried(const Memory& memory, std::uint64_t sender) {
+  std::array<std::uint64_t, lane_count> last{};
+  const std::uint64_t head = memory.header.head.load(std::memory_order_acquire);
+  for (std::uint64_t i = first_whole(head); i <= head; ++i) {
+    const Carried carried = load(entry_of(memory, i));
+    if (carried.sender == sender) {
+      last.at(carried.lane) = carried.sequence;
+    }
+  }
+  return last;
+}
+
 std::uint64_t pack(const Position& position) noexcept {
   return position.next << dropped_bits | position.dropped;
 }

@@ -30,6 +30,16 @@ inline const LogEntry& entry_of(const Memory& memory, std::uint64_t number) noex
   return memory.log[number % log_size];
 }
 
+/// Up to where a sender's frames are in the log, in each lane; 0: none is. Leaves out the entry
+/// that a hub may have been writing when it was killed.
+std::array<std::uint64_t, lane_count> last_carried(const Memory& memory, std::uint64_t sender);
+
+/// The first number that is worth reading after a hub was killed: the entry before that may be half
+/// overwritten.
+inline std::uint64_t first_whole(std::uint64_t head) noexcept {
+  return head >= log_size ? head - log_size + 2 : 1;
+}
+
 /// Where a reader is. When the log is about to run over what it has not read, the hub moves it on
 /// and counts what it wanted of that: both in one exchange, so that a frame is either read or
 /// counted, never both and never neither, whoever dies when. The reader moves itself on by an

@@ -68,7 +68,11 @@ HubMemory::HubMemory(int lock_fd) {
     if (::ftruncate(lock_fd, 0) != 0) {
       fail("the bus's memory");
     }
-    if (const int error = ::posix_fallocate(lock_fd, 0, sizeof(Memory)); error != 0) {
+    int error = EINTR;
+    while (error == EINTR) {
+      error = ::posix_fallocate(lock_fd, 0, sizeof(Memory));
+    }
+    if (error != 0) {
       errno = error;
       fail("the bus's memory");
     }
@@ -98,6 +102,19 @@ void HubMemory::set_up(std::uint32_t bitrate_bps) {
 ClientMemory::ClientMemory(int lock_fd, std::size_t slot)
     : all_(lock_fd, 0, sizeof(Memory), false),
       own_(lock_fd, offsetof(Memory, slots) + slot * sizeof(Slot), sizeof(Slot), true) {}
+
+bool is_foreign_memory(int lock_fd) {
+  struct stat status {};
+  if (::fstat(lock_fd, &status) != 0 || status.st_size == 0) {
+    return false;
+  }
+  if (!has_size(lock_fd)) {
+    return true;
+  }
+  const Mapping mapping(lock_fd, 0, sizeof(Header), false);
+  const std::uint64_t magic = static_cast<const Header*>(mapping.at())->magic.load();
+  return magic != 0 && magic != layout_magic;
+}
 
 MemoryView::MemoryView(const std::string& lock_path)
     : file_(::open(lock_path.c_str(), O_RDWR | O_CLOEXEC)) {

@@ -58,6 +58,7 @@ struct Header {
   std::atomic<std::uint64_t> identity;     ///< Random: of the bus since somebody was on it.
   std::atomic<std::uint64_t> hubs;         ///< How many have carried it.
   std::atomic<std::uint64_t> host;         ///< Client that is there to carry it; 0: none.
+  std::atomic<std::int32_t> process;       ///< Of the hub.
   std::atomic<std::uint32_t> bitrate_bps;  ///< 0: none.
   alignas(64) std::atomic<std::uint64_t> head;  ///< Number of the frame carried last; from 1.
 };
@@ -123,6 +124,9 @@ class ClientMemory {
   Mapping all_;
   Mapping own_;
 };
+
+/// Whether the file is of another version: its clients may have it mapped, so it must not change.
+bool is_foreign_memory(int lock_fd);
 
 /// What can be known of a bus by its lock file alone.
 class MemoryView {

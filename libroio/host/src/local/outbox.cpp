@@ -5,6 +5,7 @@
 namespace roio::local {
 
 bool Outbox::offer(const Frame& frame, Buffer& out) {
+  offer_again(out);  // those before it first: the hub takes a frame for the sign of all before it
   const std::size_t lane = in_order_ ? normal_lane : lane_of(frame);
   auto& kept = kept_.at(lane);
   if (kept.size() >= window_) {
@@ -37,13 +38,20 @@ std::size_t Outbox::offer_again(Buffer& out) {
 }
 
 void Outbox::settle(const Slot& slot) {
+  std::array<std::uint64_t, lane_count> done{};
+  for (std::size_t lane = 0; lane < lane_count; ++lane) {
+    done.at(lane) = slot.done.at(lane).load(std::memory_order_seq_cst);
+  }
+  settle(done);
+}
+
+void Outbox::settle(const std::array<std::uint64_t, lane_count>& done) {
   for (std::size_t lane = 0; lane < lane_count; ++lane) {
     auto& kept = kept_.at(lane);
-    const std::uint64_t done = slot.done.at(lane).load(std::memory_order_seq_cst);
-    while (!kept.empty() && kept.front().sequence <= done) {
+    while (!kept.empty() && kept.front().sequence <= done.at(lane)) {
       kept.pop_front();
-      ++settled_;
       offered_.at(lane) -= std::min<std::size_t>(offered_.at(lane), 1);
+      ++settled_;
     }
   }
 }

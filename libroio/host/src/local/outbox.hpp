@@ -33,8 +33,14 @@ class Outbox {
   /// Appends records of what this hub has not been offered, as many as may be on their way.
   /// @return how many. @throws std::bad_alloc: no harm done; again.
   std::size_t offer_again(Buffer& out);
+  /// Whether some are kept that this hub has not been offered.
+  [[nodiscard]] bool has_more() const {
+    return offered_[0] < kept_[0].size() || offered_[1] < kept_[1].size();
+  }
   /// Forgets what the log has. @param slot the client's.
   void settle(const Slot& slot);
+  /// The same, up to a sequence number in each lane.
+  void settle(const std::array<std::uint64_t, lane_count>& done);
 
   /// On their way.
   [[nodiscard]] std::size_t size() const { return kept_[0].size() + kept_[1].size(); }

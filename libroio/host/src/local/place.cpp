@@ -7,6 +7,7 @@
 #include <sys/un.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstdlib>
 #include <cstring>
@@ -14,6 +15,8 @@
 #include <roio/error.hpp>
 #include <roio/text.hpp>
 #include <utility>
+
+#include "local/memory.hpp"
 
 namespace roio::local {
 namespace {
@@ -136,9 +139,17 @@ void HubSeat::open() {
     fail(socket_path_);
   }
   no_listener_in_children_ = ParentsFd(listener_.get());
+  struct stat there {};
+  socket_file_ = ::lstat(socket_path_.c_str(), &there) == 0 ? there.st_ino : 0;
 }
 
 bool HubSeat::is_in_place() const {
+  struct stat there {};
+  return has_lock_in_place() && ::lstat(socket_path_.c_str(), &there) == 0 &&
+         there.st_ino == socket_file_;
+}
+
+bool HubSeat::has_lock_in_place() const {
   return is_file_at(lock_, lock_path_);
 }
 
@@ -147,7 +158,7 @@ void HubSeat::leave(bool remove_memory) noexcept {
     return;
   }
   // Were the folder emptied meanwhile, what is there now would be another hub's.
-  if (is_in_place()) {
+  if (has_lock_in_place()) {
     ::unlink(socket_path_.c_str());
     if (remove_memory) {
       ::unlink(lock_path_.c_str());  // still locked: see Place::claim()
@@ -207,14 +218,22 @@ std::vector<std::string> Place::lock_paths() const {
   return paths;
 }
 
+/// Where the bus goes on whose hub has gone, else where a new one begins.
+std::string Place::folder_to_claim(const std::vector<std::string>& all) const {
+  const auto lives = std::find_if(all.begin(), all.end(), [this](const std::string& folder) {
+    return is_private_folder(folder) && MemoryView(lock_path(folder, bus_name_)).has_clients();
+  });
+  return lives != all.end() ? *lives : all.front();
+}
+
 std::optional<HubSeat> Place::claim() const {
   const std::vector<std::string> all = folders();
-  for (auto other = all.begin() + 1; other != all.end(); ++other) {
-    if (is_carried_in(*other)) {
+  const std::string folder = folder_to_claim(all);
+  for (const std::string& other : all) {
+    if (other != folder && is_carried_in(other)) {
       return std::nullopt;
     }
   }
-  const std::string& folder = all.front();
   make_private_folder(folder);  // it may have been cleaned away
   const std::string path = lock_path(folder, bus_name_);
   UniqueFd lock(::open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, S_IRUSR | S_IWUSR));
@@ -230,6 +249,10 @@ std::optional<HubSeat> Place::claim() const {
   // Who held the lock before may have removed its file since it was opened here: then this lock is
   // on a file that nobody else will find.
   if (!is_file_at(lock, path)) {
+    return std::nullopt;
+  }
+  if (is_foreign_memory(lock.get())) {
+    ::unlink(path.c_str());  // who has it keeps it; the next look makes another
     return std::nullopt;
   }
   return HubSeat(std::move(lock), path, socket_path(folder, bus_name_));

@@ -37,11 +37,14 @@ class HubSeat {
 
  private:
   UniqueFd lock_;
+  [[nodiscard]] bool has_lock_in_place() const;
+
   UniqueFd listener_;
   ParentsFd no_lock_in_children_;
   ParentsFd no_listener_in_children_;
   std::string lock_path_;
   std::string socket_path_;
+  ino_t socket_file_ = 0;
 };
 
 /// The folders in which this user's local buses may be; the first is where new ones are made. They
@@ -83,6 +86,7 @@ class Place {
 
  private:
   [[nodiscard]] std::optional<Hub> find_in(const std::string& folder) const;
+  [[nodiscard]] std::string folder_to_claim(const std::vector<std::string>& all) const;
   [[nodiscard]] bool is_carried_in(const std::string& folder) const;
 
   std::string bus_name_;

@@ -48,9 +48,11 @@ enum class RecordType : std::uint8_t {
 /// Of the same size in every version, so that an old hub can say what is wrong.
 struct Hello {
   static constexpr RecordType type = RecordType::hello;
+  static constexpr std::uint16_t wants_the_seat = 1;
+  static constexpr std::uint16_t has_the_seat = 2;  // the hub is in its process
   std::array<char, 4> magic;
   std::uint16_t version;
-  std::uint16_t host;         // 1: is there to carry the bus, and means to
+  std::uint16_t host;         // for a client that is there to carry the bus
   std::uint64_t client;       // random, not 0, the same at every hub
   std::uint32_t bitrate_bps;  // 0: whatever the bus runs at
   std::uint32_t zero;

@@ -32,7 +32,7 @@ class Readers {
   void set_wake(std::size_t slot, EventFlag* wake) { states_.at(slot).wake = wake; }
 
   static bool listens(const Slot& slot) noexcept {
-    return slot.filter_count.load(std::memory_order_acquire) > 0;
+    return slot.filter_count.load(std::memory_order_seq_cst) > 0;
   }
   /// How many listen.
   [[nodiscard]] std::size_t listeners() const;

@@ -17,7 +17,7 @@ void publish_filters(Slot& slot, std::span<const SocketCanFilter> filters) noexc
     slot.filters.at(i).store(std::uint64_t{filters[i].can_mask} << mask_shift | filters[i].can_id,
                              std::memory_order_relaxed);
   }
-  slot.filter_count.store(static_cast<std::uint32_t>(filters.size()), std::memory_order_relaxed);
+  slot.filter_count.store(static_cast<std::uint32_t>(filters.size()), std::memory_order_seq_cst);
   slot.filter_version.store(version + 1, std::memory_order_seq_cst);
 }
 

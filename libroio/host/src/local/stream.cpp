@@ -41,6 +41,13 @@ Split Stream::take(Record& record) {
   return split;
 }
 
+void Stream::close() {
+  // A child that was forked just now may have it, too: the other end is to know all the same.
+  ::shutdown(socket_.get(), SHUT_RDWR);
+  not_in_children_ = ParentsFd();
+  socket_.reset();
+}
+
 bool Stream::flush() {
   while (!flushed()) {
     const std::size_t size = std::min(write_size, out_.size() - out_start_);

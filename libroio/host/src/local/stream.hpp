@@ -19,10 +19,7 @@ class Stream {
 
   [[nodiscard]] int fd() const { return socket_.get(); }
   [[nodiscard]] bool open() const { return static_cast<bool>(socket_); }
-  void close() {
-    not_in_children_ = ParentsFd();
-    socket_.reset();
-  }
+  void close();
 
   enum class Read : std::uint8_t {
     some,     ///< Bytes came; there may be more.
