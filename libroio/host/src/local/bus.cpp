@@ -34,6 +34,7 @@ std::vector<SocketCanFilter> first_filters(const OpenOptions& options) {
 LocalBus::LocalBus(const std::string& bus_name, std::optional<std::uint32_t> bitrate_bps,
                    const OpenOptions& options)
     : name_("local:" + bus_name),
+      no_memory_(ENOMEM, std::generic_category(), name_),
       connector_(bus_name, bitrate_bps, options.carry),
       open_timeout_(options.open_timeout),
       inbox_(connector_.client(), first_filters(options)),
@@ -257,7 +258,7 @@ void LocalBus::run() {
     } catch (const std::bad_alloc&) {
       // Without memory it cannot keep up; what was lost is counted. It comes back when there is.
       disconnect();
-      note_trouble(std::system_error(ENOMEM, std::generic_category(), name_));
+      note_trouble(no_memory_);
       static_cast<void>(::poll(nullptr, 0, static_cast<int>(retry_interval.count())));
     }
   }

@@ -112,8 +112,8 @@ bool is_foreign_memory(int lock_fd) {
     return true;
   }
   const Mapping mapping(lock_fd, 0, sizeof(Header), false);
-  const std::uint64_t magic = static_cast<const Header*>(mapping.at())->magic.load();
-  return magic != 0 && magic != layout_magic;
+  const std::uint64_t word = static_cast<const Header*>(mapping.at())->magic.load();
+  return word != 0 && word != layout_magic;
 }
 
 MemoryView::MemoryView(const std::string& lock_path)
