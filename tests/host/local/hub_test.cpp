@@ -16,59 +16,16 @@
 #include "local/memory.hpp"
 #include "local/place.hpp"
 #include "process.hpp"
+#include "rig.hpp"
 
 namespace roio {
 namespace {
 
 using namespace std::chrono_literals;
+using test::becomes;
 using test::Peer;
+using test::refusal;
 using test::unique_name;
-
-// What open() says when it refuses.
-std::string refusal(const std::string& url) {
-  try {
-    const auto bus = open(url, {.open_timeout = 300ms});
-  } catch (const std::system_error& error) {
-    return error.what();
-  }
-  return "(opened)";
-}
-
-// A folder for buses of this test's own.
-class RuntimeFolder {
- public:
-  explicit RuntimeFolder(const std::string& name)
-      : path_(std::filesystem::temp_directory_path() / name) {
-    ::setenv("ROIO_RUNTIME_DIR", path_.c_str(), 1);
-  }
-  RuntimeFolder(const RuntimeFolder&) = delete;
-  RuntimeFolder& operator=(const RuntimeFolder&) = delete;
-  ~RuntimeFolder() {
-    ::unsetenv("ROIO_RUNTIME_DIR");
-    std::filesystem::remove_all(path_);
-  }
-  [[nodiscard]] const std::filesystem::path& path() const { return path_; }
-
- private:
-  std::filesystem::path path_;
-};
-
-mode_t mode_of(const std::filesystem::path& path) {
-  struct stat status {};
-  EXPECT_EQ(::lstat(path.c_str(), &status), 0) << path;
-  return status.st_mode & ACCESSPERMS;
-}
-
-// Bounded; the hub needs a moment to see who came and went.
-bool becomes(const Bus& bus, std::size_t listeners) {
-  for (const auto end = std::chrono::steady_clock::now() + 30s;
-       std::chrono::steady_clock::now() < end; std::this_thread::sleep_for(1ms)) {
-    if (bus.listeners() == listeners) {
-      return true;
-    }
-  }
-  return false;
-}
 
 TEST(LocalBus, WhoOnlyJoinsCarriesItForNobody) {
   const std::string name = "local:" + unique_name();
@@ -183,20 +140,6 @@ TEST(LocalBus, TakesSoManyProgramsAndTellsTheNextOne) {
   EXPECT_EQ(refusal(url), "(opened)") << "once one has gone";
 }
 
-TEST(LocalBus, WhoseFilesAreRemovedComesTogetherAgain) {
-  const RuntimeFolder folder(unique_name());
-  const auto first = open("local:cleaned");
-  const auto second = open("local:cleaned");
-  std::filesystem::remove_all(folder.path());
-  const auto newcomer = open("local:cleaned");
-  EXPECT_TRUE(becomes(*newcomer, 2)) << "there is one bus of that name";
-  ASSERT_EQ(first->send(Frame{1, FrameKind::standard, 0, {}}, 30s), Result::ok);
-  Received received{};
-  EXPECT_EQ(second->receive(received, 30s), Result::ok);
-  EXPECT_EQ(newcomer->receive(received, 30s), Result::ok);
-  EXPECT_GE(first->statistics().outages, 1U);
-}
-
 TEST(LocalBus, TellsHowManyOthersListen) {
   const std::string name = "local:" + unique_name();
   const auto sender = open(name, {.send_only = true});
@@ -234,6 +177,28 @@ TEST(LocalBus, CountsWhatNobodyElseHad) {
   EXPECT_EQ(sender->statistics().unheard, 1U) << "who comes later has not had it";
 }
 
+// Its slot is the next one's.
+TEST(LocalBus, OnceClosedKeepsItsOwnCountsAndHandsOff) {
+  const std::string name = "local:" + unique_name();
+  const Frame frame{0x123, FrameKind::standard, 0, {}};
+  const auto holder = open(name, {.send_only = true});
+  const auto closed = open(name);
+  closed->close();
+  const auto next = open(name);
+  for (int i = 0; i < 3; ++i) {
+    ASSERT_EQ(next->send(frame, 30s), Result::ok);
+    ASSERT_EQ(holder->send(frame, 30s), Result::ok);
+  }
+  closed->set_filters({});
+  EXPECT_EQ(closed->statistics().unheard, 0U);
+  EXPECT_EQ(closed->statistics().dropped, 0U);
+  Received received{};
+  for (int i = 0; i < 3; ++i) {
+    ASSERT_EQ(next->receive(received, 30s), Result::ok);
+    EXPECT_EQ(received.lost_before, 0U);
+  }
+}
+
 TEST(LocalBus, ANewHubTellsHowManyListen) {
   const std::string name = "local:" + unique_name();
   auto hub = open(name, {.send_only = true});
@@ -241,14 +206,6 @@ TEST(LocalBus, ANewHubTellsHowManyListen) {
   const auto sender = open(name, {.send_only = true});
   hub.reset();
   EXPECT_TRUE(becomes(*sender, 1));
-}
-
-TEST(LocalBus, ARelativeFolderIsRefused) {
-  const RuntimeFolder folder("buses");
-  ::setenv("ROIO_RUNTIME_DIR", "buses", 1);
-  EXPECT_EQ(refusal("local:robot"),
-            "ROIO_RUNTIME_DIR \"buses\": expected a path that begins with /");
-  EXPECT_FALSE(std::filesystem::exists("buses"));
 }
 
 constexpr const char* another_pace =
@@ -281,54 +238,6 @@ TEST(LocalBus, TheBitRateOutlivesTheHub) {
   }
   EXPECT_EQ(refusal(name + "?bitrate=125000"), "(opened)");
   EXPECT_NE(refusal(name + "?bitrate=500000"), "(opened)");
-}
-
-TEST(LocalBus, IsForThisUserAlone) {
-  const RuntimeFolder folder(unique_name());
-  const auto bus = open("local:mine");
-  EXPECT_EQ(mode_of(folder.path()), mode_t{0700});
-  EXPECT_EQ(mode_of(folder.path() / "mine.sock"), mode_t{0600});
-}
-
-TEST(LocalBus, AFolderOpenToOthersIsRefused) {
-  const RuntimeFolder folder(unique_name());
-  std::filesystem::create_directory(folder.path());
-  std::filesystem::permissions(folder.path(), std::filesystem::perms::all);
-  EXPECT_EQ(refusal("local:mine"), folder.path().string() +
-                                       ": expected a folder of this user's with mode 0700; "
-                                       "ROIO_RUNTIME_DIR can name another: local buses are for one "
-                                       "user alone");
-}
-
-TEST(LocalBus, AFolderThatIsALinkIsRefused) {
-  const RuntimeFolder folder(unique_name());
-  std::filesystem::create_symlink("/tmp", folder.path());
-  EXPECT_NE(refusal("local:mine"), "(opened)");
-}
-
-TEST(LocalBus, APathTooLongForASocketIsAnError) {
-  const RuntimeFolder folder(unique_name() + std::string(80, 'x'));
-  EXPECT_NE(refusal("local:mine").find("File name too long"), std::string::npos);
-}
-
-TEST(LocalBus, TheSocketOfAKilledHubIsCleanedUp) {
-  const RuntimeFolder folder(unique_name());
-  {
-    Peer hub({"hold", "local:stale"});
-    ASSERT_EQ(hub.line(), "open");
-    hub.kill();
-  }
-  ASSERT_TRUE(std::filesystem::exists(folder.path() / "stale.sock"));
-  { const auto bus = open("local:stale"); }
-  EXPECT_TRUE(std::filesystem::is_empty(folder.path())) << "neither socket nor lock is left";
-}
-
-TEST(LocalBus, AFileInTheSocketsPlaceIsReplaced) {
-  const RuntimeFolder folder(unique_name());
-  std::filesystem::create_directory(folder.path());
-  std::filesystem::permissions(folder.path(), std::filesystem::perms::owner_all);
-  std::ofstream(folder.path() / "odd.sock") << "no socket";
-  EXPECT_EQ(refusal("local:odd"), "(opened)");
 }
 
 // The third keeps the hub busy, so that it carries frames while the filters change. Its frames lose

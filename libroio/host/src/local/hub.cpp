@@ -8,7 +8,6 @@
 #include <new>
 #include <roio/error.hpp>
 #include <roio/parts/thread.hpp>
-#include <unordered_map>
 #include <utility>
 
 #include "local/presence.hpp"
@@ -37,8 +36,12 @@ std::optional<std::uint32_t> rate(std::uint32_t bitrate_bps) {
 }  // namespace
 
 Hub::Hub(HubSeat seat, std::optional<std::uint32_t> bitrate_bps, std::uint64_t host)
-    : seat_(std::move(seat)), memory_(seat_.lock_fd()), readers_(*memory_), now_(Clock::now()) {
-  if (!take_over()) {
+    : seat_(std::move(seat)),
+      memory_(seat_.lock_fd()),
+      readers_(*memory_),
+      roster_(*memory_, seat_.lock_fd(), readers_),
+      now_(Clock::now()) {
+  if (!memory_.is_set_up() || !roster_.take_over()) {
     memory_.set_up(bitrate_bps.value_or(0));
   }
   memory_->header.hubs.fetch_add(1, std::memory_order_relaxed);
@@ -56,47 +59,6 @@ Hub::Hub(HubSeat seat, std::optional<std::uint32_t> bitrate_bps, std::uint64_t h
 Hub::~Hub() {
   stop_.set();
   thread_.join();
-}
-
-/// @return whether anybody is left of the bus that is in the memory.
-bool Hub::take_over() {
-  if (!memory_.is_set_up()) {
-    return false;
-  }
-  bool any = false;
-  for (std::size_t slot = 0; slot < max_clients; ++slot) {
-    if (memory_->slots.at(slot).client.load(std::memory_order_relaxed) != 0) {
-      readers_.add(slot);
-      any = true;
-    }
-  }
-  free_slots_of_the_dead();
-  any = any && std::any_of(memory_->slots.begin(), memory_->slots.end(), [](const Slot& slot) {
-          return slot.client.load(std::memory_order_relaxed) != 0;
-        });
-  if (any) {
-    note_done_from_log();
-  }
-  return any;
-}
-
-// The last hub may have died after it had carried a frame and before it had told the sender. Or
-// while it was writing the next one, in the place of the oldest that is kept: that one is left out.
-void Hub::note_done_from_log() {
-  std::unordered_map<std::uint64_t, Slot*> slots;
-  for (Slot& slot : memory_->slots) {
-    slots.emplace(slot.client.load(std::memory_order_relaxed), &slot);
-  }
-  const std::uint64_t head = memory_->header.head.load(std::memory_order_relaxed);
-  for (std::uint64_t i = first_whole(head); i <= head; ++i) {
-    const Carried carried = load(entry_of(*memory_, i));
-    const auto sender = slots.find(carried.sender);
-    if (sender != slots.end() && carried.lane < lane_count) {
-      auto& done = sender->second->done.at(carried.lane);
-      done.store(std::max(done.load(std::memory_order_relaxed), carried.sequence),
-                 std::memory_order_relaxed);
-    }
-  }
 }
 
 std::uint32_t Hub::window() const {
@@ -260,14 +222,15 @@ void Hub::greet(HubClient& client, const Hello& hello) {
     refuse(Errc::bitrate_mismatch);
   } else if (!is_present(seat_.lock_fd(), hello.client)) {
     cut(client);
-  } else if (hello.host == Hello::wants_the_seat && has_host_but(hello.client)) {
+  } else if (hello.host == Hello::wants_the_seat && roster_.has_host_but(hello.client)) {
     refuse(Errc::carried_already);
   } else if (hello.host == Hello::wants_the_seat) {
     // Its seat from now on. This hub goes, and that client finds it free.
     memory_->header.host.store(hello.client, std::memory_order_seq_cst);
     is_over_ = true;
-  } else if (const bool fresh = !slot_of(hello.client); auto slot = give_slot(hello.client)) {
-    if (hello.host == Hello::has_the_seat && !has_host_but(hello.client)) {
+  } else if (const bool fresh = !roster_.slot_of(hello.client);
+             auto slot = give_slot(hello.client)) {
+    if (hello.host == Hello::has_the_seat && !roster_.has_host_but(hello.client)) {
       memory_->header.host.store(hello.client, std::memory_order_seq_cst);
     }
     medium_->drop_station_of(hello.client);
@@ -286,23 +249,9 @@ void Hub::greet(HubClient& client, const Hello& hello) {
   }
 }
 
-bool Hub::has_host_but(std::uint64_t client) const {
-  const std::uint64_t host = memory_->header.host.load(std::memory_order_relaxed);
-  return host != 0 && host != client && is_present(seat_.lock_fd(), host);
-}
-
-std::optional<std::size_t> Hub::slot_of(std::uint64_t client) const {
-  const auto found = std::find_if(
-      memory_->slots.begin(), memory_->slots.end(),
-      [client](const Slot& slot) { return slot.client.load(std::memory_order_relaxed) == client; });
-  return found == memory_->slots.end()
-             ? std::nullopt
-             : std::optional(static_cast<std::size_t>(found - memory_->slots.begin()));
-}
-
 /// The one that it has, or a free one; none: there is none.
 std::optional<std::size_t> Hub::give_slot(std::uint64_t client) {
-  if (const auto slot = slot_of(client)) {
+  if (const auto slot = roster_.slot_of(client)) {
     // It knows before this hub does that its last connection is over.
     for (const auto& other : clients_) {
       if (other->greeted() && other->slot() == *slot) {
@@ -312,48 +261,20 @@ std::optional<std::size_t> Hub::give_slot(std::uint64_t client) {
     }
     return slot;
   }
-  auto index = slot_of(0);
-  if (!index) {
+  if (!roster_.slot_of(0)) {
     free_slots_of_the_dead();
-    index = slot_of(0);
   }
-  if (index) {
-    Slot& slot = memory_->slots.at(*index);
-    for (auto& done : slot.done) {
-      done.store(0, std::memory_order_relaxed);
-    }
-    slot.unheard.store(0, std::memory_order_relaxed);
-    slot.dropped.store(0, std::memory_order_relaxed);
-    slot.position.store(pack({memory_->header.head.load(std::memory_order_relaxed) + 1, 0}),
-                        std::memory_order_relaxed);
-    slot.sleeping.store(0, std::memory_order_relaxed);
-    slot.awaits_done.store(0, std::memory_order_relaxed);
-    slot.bus_waits.store(0, std::memory_order_relaxed);
-    slot.queued.store(0, std::memory_order_relaxed);
-    slot.consumed.store(0, std::memory_order_relaxed);
-    slot.filter_version.store(0, std::memory_order_relaxed);
-    slot.filter_count.store(0, std::memory_order_relaxed);
-    slot.client.store(client, std::memory_order_release);
-    readers_.add(*index);
-  }
-  return index;
+  return roster_.take_free(client);
 }
 
-// Who is not connected and still alive is to come over yet: a stopped process, for one.
 void Hub::free_slots_of_the_dead() {
-  std::array<bool, max_clients> connected{};
+  Roster::Connected connected{};
   for (const auto& client : clients_) {
-    connected.at(client->slot()) |= client->greeted() && client->stream().open();
-  }
-  for (std::size_t i = 0; i < max_clients; ++i) {
-    Slot& slot = memory_->slots.at(i);
-    const std::uint64_t client = slot.client.load(std::memory_order_relaxed);
-    if (client != 0 && !connected.at(i) && !is_present(seat_.lock_fd(), client)) {
-      slot.filter_count.store(0, std::memory_order_relaxed);
-      slot.client.store(0, std::memory_order_relaxed);
-      readers_.remove(i);
+    if (client->greeted() && client->stream().open()) {
+      connected.at(client->slot()) = true;
     }
   }
+  roster_.free_dead(connected);
 }
 
 void Hub::take_frame(HubClient& client, const OfferedFrame& offered) {
@@ -447,12 +368,7 @@ void Hub::drop_closed_clients() {
 // All that has been carried is in the memory, for whoever is still to read it. The seat is free
 // before anybody sees that this hub has gone.
 void Hub::leave() noexcept {
-  const bool anybody =
-      std::any_of(memory_->slots.begin(), memory_->slots.end(), [this](const Slot& slot) {
-        const std::uint64_t client = slot.client.load(std::memory_order_relaxed);
-        return client != 0 && is_present(seat_.lock_fd(), client);
-      });
-  seat_.leave(!anybody);
+  seat_.leave(!roster_.has_anybody());
   for (const auto& client : clients_) {
     cut(*client);
   }

@@ -15,6 +15,7 @@
 #include "local/place.hpp"
 #include "local/poller.hpp"
 #include "local/readers.hpp"
+#include "local/roster.hpp"
 
 namespace roio::local {
 
@@ -42,10 +43,6 @@ class Hub {
  private:
   using Clock = std::chrono::steady_clock;
 
-  // Taking over.
-  bool take_over();
-  void note_done_from_log();
-
   // The thread.
   void run();
   void serve();
@@ -67,8 +64,6 @@ class Hub {
   void drop_closed_clients();
 
   // Slots.
-  [[nodiscard]] bool has_host_but(std::uint64_t client) const;
-  [[nodiscard]] std::optional<std::size_t> slot_of(std::uint64_t client) const;
   std::optional<std::size_t> give_slot(std::uint64_t client);
   void free_slots_of_the_dead();
 
@@ -80,6 +75,7 @@ class Hub {
   HubSeat seat_;
   HubMemory memory_;
   Readers readers_;
+  Roster roster_;
   std::optional<Medium> medium_;
   EventFlag stop_;
   Poller poller_;

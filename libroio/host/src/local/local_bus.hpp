@@ -86,7 +86,7 @@ class LocalBus final : public Bus {
 
   std::string name_;
   const std::system_error no_memory_;  // made while there is some
-  Connector connector_;  // the reading thread's
+  Connector connector_;                // the reading thread's
   const Timeout open_timeout_;
   bool has_looked_ = false;  // the reading thread, for a hub
   BusEvents events_;
