@@ -110,6 +110,7 @@ class Session {
   // down
   void serve(const uint8_t* body, uint8_t length);
   void take_frame(const uint8_t* body, uint8_t length);
+  bool refuse(uint8_t token, Status status);
   void notice_sequence(uint8_t sequence);
   void control(serial::Down operation, const uint8_t* payload, uint8_t length);
   void reply_to(uint8_t request, Status status);

@@ -44,16 +44,23 @@ ROIO_BRIDGE_FAST inline void Session::take_frame(const uint8_t* body, uint8_t le
   const uint8_t life = body[serial::life_at];
   slots.begin(token, life);
   const Status status = life == 0 ? Status::empty : can_.send(frame, token);
-  if (status != Status::ok) {
-    slots.end(token, serial::Outcome::not_sent);
-    if (status == Status::full || status == Status::no_chip) {
-      return;  // not taken: the PC sends it again when it has waited long enough
-    }
-    ++tally_.refused;
+  if (status != Status::ok && !refuse(token, status)) {
+    return;  // not taken: the PC sends it again when it has waited long enough
   }
   next_ = static_cast<uint8_t>(next_ + 1U);
   gap_told_ = false;
   slots.add_news();
+}
+
+/// Of a frame that the controller does not get.
+/// @return whether it is taken all the same: its outcome is known.
+__attribute__((noinline)) inline bool Session::refuse(uint8_t token, Status status) {
+  can_.slots().end(token, serial::Outcome::not_sent);
+  if (status == Status::full || status == Status::no_chip) {
+    return false;
+  }
+  ++tally_.refused;
+  return true;
 }
 
 inline void Session::control(serial::Down operation, const uint8_t* payload, uint8_t length) {

@@ -15,7 +15,7 @@ struct Lives {
   uint16_t now;
   uint16_t units;  ///< That a frame with `life` may wait, less the time to the next look.
   uint8_t life;
-  uint8_t looked_at;
+  uint8_t next;  ///< That was looked at last.
   bool all_over;
 };
 // Outside the class: the driver holds that in front of its own members, and an AVR reaches 64 bytes
@@ -63,19 +63,20 @@ class Slots {
   /// Of a frame that has an end: whether it still waits.
   static bool is_pending(uint8_t token) { return lives.ends[token & 0x0FU] != no_end; }
 
+  /// To be called every millisecond: looks at some of them, at all in 6 ms. The bus waits
+  /// meanwhile.
   /// @param now Clock::coarse().
   /// @return whether frames are over that the driver may have.
   static bool pass_time(uint16_t now) {
     lives.now = now;
-    if (static_cast<uint8_t>(static_cast<uint8_t>(now) - lives.looked_at) < look_interval) {
-      return false;
-    }
-    lives.looked_at = static_cast<uint8_t>(now);
     bool any = false;
-    for (const uint16_t end : lives.ends) {
-      any = any || is_past(end);
+    for (uint8_t looks = looks_at_once; looks != 0; --looks) {
+      lives.next = lives.next == own ? uint8_t{0} : static_cast<uint8_t>(lives.next + 1U);
+      if (is_past(lives.ends[lives.next])) {
+        any = true;
+      }
     }
-    if (is_past(lives.ends[own])) {
+    if (any && is_past(lives.ends[own])) {
       lives.ends[own] = no_end;
     }
     return any;
@@ -107,7 +108,8 @@ class Slots {
   static constexpr uint8_t generations = 15;  // with a 16th, no_token would be a token
   static constexpr uint8_t own = serial::window;
   static constexpr uint16_t no_end = 0;  // of a frame that may wait for ever; or there is none
-  static constexpr uint8_t look_interval = 8;
+  static constexpr uint8_t looks_at_once = 3;
+  static constexpr uint8_t look_interval = 8;  // 6, and what a busy bus makes of it
 
   static bool is_past(uint16_t end) {
     return end != no_end && static_cast<uint16_t>(lives.now - end) < 0x8000U;
