@@ -97,7 +97,7 @@ class ArduinoNode {
   }
   static Filters everything() { return mcp2515_filters_of_everything(); }
   /// The filters for an Interest. When `exact` is false the chip lets through more than was asked
-  /// for.
+  /// for; in Mode::listen_only it lets everything through, whatever the filters are.
   /// @param filters written on ok only.
   /// @return ok; bad_argument: its own address is none; full: more than 8 rules.
   ROIO_NODISCARD static Status filtersOf(const Interest& interest, Filters& filters) {

@@ -246,7 +246,7 @@ class Mcp2515 {
   ROIO_NODISCARD Status send(const Mcp2515Frame& frame, uint8_t token = 0);
 
   /// Enters another mode (normal, listen_only or loopback), as soon as the bus is idle for 11 bits;
-  /// waits for it as begin() does.
+  /// waits for it as begin() does. While it only listens the chip's filters do not hold (10.3).
   /// @return ok; bad_argument: configuration mode; no_chip; wrong_mode: not entered: begin() again.
   ROIO_NODISCARD Status change_mode(mcp2515::Mode mode);
 
