@@ -32,7 +32,7 @@ void SpiWire::set_fault(Fault fault) {
 
 bool SpiWire::interrupt_line_is_low() {
   return std::exchange(spike_, false) || line_held_low_ ||
-         (fault_ == Fault::none && !chip_.interrupt_pin());
+         (fault_ == Fault::none && !line_cut_ && !chip_.interrupt_pin());
 }
 
 void SpiWire::clear_faults() {
@@ -41,6 +41,7 @@ void SpiWire::clear_faults() {
   lose_select_in_ = 0;
   spike_ = false;
   line_held_low_ = false;
+  line_cut_ = false;
 }
 
 void SpiWire::set_bit_flips(double probability, std::uint32_t seed) {

@@ -80,6 +80,8 @@ void run_full_bus(std::uint32_t longest_absence_us, bool loses) {
   EXPECT_TRUE(received == rig.accepted) << "not in order";
   EXPECT_EQ(counters.received, received.size());
   EXPECT_EQ(counters.foreign + counters.discarded + counters.chip_losses, 0U);
+  EXPECT_EQ(counters.line_losses, 0U);
+  EXPECT_EQ(rig.can.line_is_on(), WithLine) << "never taken for one that is off";
   EXPECT_LE(counters.overflows, lost) << "the chip cannot say how many, only that some were lost";
   EXPECT_EQ(counters.overflows > 0, loses);
   EXPECT_EQ(lost > 0, loses);

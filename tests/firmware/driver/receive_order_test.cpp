@@ -211,6 +211,7 @@ class Interleaving {
     const std::size_t steps = step_;
     next_ = events_.size();
     EXPECT_EQ(received, rig_.accepted) << text();
+    EXPECT_EQ(rig_.can.counters().line_losses, 0U) << text();
     rig_.peer_received.clear();
     rig_.can.traits().outcomes.clear();
     return steps;

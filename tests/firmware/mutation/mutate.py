@@ -41,6 +41,7 @@ RECEIVE = "receive_order_test.cpp"
 TRANSMIT = "transmit_order_test.cpp"
 OTHER = "receive_test.cpp"
 BEGIN = "begin_test.cpp"
+LINE = "interrupt_line_test.cpp"
 GUARD = 240  # seconds; a driver without its rules may hang
 
 # name: (what the driver no longer does, text of one of its headers, what stands there instead,
@@ -84,9 +85,36 @@ MUTATIONS = {
         RECEIVE, ["ReceiveOrder.AnInterruptLineThatIsStuckLowIsNoFrame"]),
     "a_line_that_rises_early_tells_of_a_lost_chip": (
         "look at the interrupt line before it trusts what it read",
-        "    trusted = !Port::has_interrupt_line || port_.interrupt_line_is_low();",
-        "    trusted = true;",
+        "    called = is_called();",
+        "    called = true;",
         OTHER, ["ChipLoss.AFrameReadFromAChipThatWasResetIsDiscarded"]),
+    "a_line_that_is_off_throws_no_frame_away": (
+        "hand out a frame of a chip that answers, whatever the interrupt line says",
+        "  return running_;\n}\n\nROIO_MCP2515_MEMBER(Status)::receive(Frame& frame) {",
+        "  return running_ && called;\n}\n\nROIO_MCP2515_MEMBER(Status)::receive(Frame& frame) {",
+        LINE, ["InterruptLineOff.FromSomeTimeOn/NotConnected",
+               "InterruptLine.ComesOffWhileAFrameIsRead", "InterruptLine.ThatIsLooseLosesNothing"]),
+    "a_line_that_is_off_is_left_alone": (
+        "poll once it has found the interrupt line off",
+        "  requests_.set_on(false);",
+        "",
+        LINE, ["InterruptLineOff.FromSomeTimeOn/NotConnected", "InterruptLine.ThatIsLooseLosesNothing"]),
+    "a_lost_chip_is_no_line_that_is_off": (
+        "look whether it is the chip before it blames the interrupt line",
+        "    if (!called && running_) {",
+        "    if (!called) {",
+        LINE, ["InterruptLine.IsNotBlamedForALostChip"]),
+    "the_line_is_tried_at_the_beginning": (
+        "see the interrupt line follow the chip in begin()",
+        "    requests_.set_on(falls && rises);",
+        "    requests_.set_on(true);",
+        LINE, ["InterruptLineOff.FromTheBeginning/NotConnected",
+               "InterruptLineOff.FromTheBeginning/StuckLow"]),
+    "the_line_is_let_go_of": (
+        "clear the flag by which it tried the interrupt line",
+        "    const bool rises = line_follows(false);  // in any case: no flag may stay",
+        "    const bool rises = falls && line_follows(false);",
+        LINE, ["InterruptLineOff.FromTheBeginning/NotConnected"]),
     "an_idle_look_that_went_wrong_is_repeated": (
         "look again when an idle look was nonsense",
         "    if (--tries == 0) {",

@@ -129,6 +129,28 @@ TEST(SpiWire, TheInterruptLineMaySpike) {
   EXPECT_FALSE(rig.wire.interrupt_line_is_low()) << "for one look";
 }
 
+TEST(SpiWire, TheInterruptLineMayBeStuckOrCut) {
+  WireRig rig;
+  const auto pull = [&rig](bool pulls) {
+    rig.transfer({0x02, 0x2B, 0x01, static_cast<std::uint8_t>(pulls ? 0x01 : 0x00)});
+  };
+  rig.wire.hold_interrupt_line_low(true);
+  EXPECT_TRUE(rig.wire.interrupt_line_is_low());
+  rig.wire.hold_interrupt_line_low(false);
+  EXPECT_FALSE(rig.wire.interrupt_line_is_low());
+  pull(true);
+  EXPECT_TRUE(rig.wire.interrupt_line_is_low());
+  rig.wire.cut_interrupt_line(true);
+  EXPECT_FALSE(rig.wire.interrupt_line_is_low()) << "pulled up";
+  rig.wire.cut_interrupt_line(false);
+  EXPECT_TRUE(rig.wire.interrupt_line_is_low());
+  rig.wire.cut_interrupt_line(true);
+  rig.wire.clear_faults();
+  EXPECT_TRUE(rig.wire.interrupt_line_is_low());
+  pull(false);
+  EXPECT_FALSE(rig.wire.interrupt_line_is_low());
+}
+
 TEST(SpiWire, FaultsCanBeCleared) {
   WireRig rig;
   rig.wire.set_fault(SpiWire::Fault::stuck_high);

@@ -22,7 +22,8 @@
 /// **Cost.** For a frame with 8 bytes, in SPI bytes and transactions: received in a run or with an
 /// interrupt line 16 in 2, the first one found by polling 18 in 3; sent 15 in 2, and 17 in 3 while
 /// the chip may still have others. A frame with n bytes fewer costs n fewer. A call that finds
-/// nothing costs 2 in 1, or none with an interrupt line. No call waits for the bus.
+/// nothing costs 2 in 1, or none with an interrupt line. No call waits for the bus. An interrupt
+/// line that is found not to work is left alone until the next begin(), and polling goes on.
 ///
 /// No heap, no exceptions, no global state, no floating point. What a template argument switches
 /// off takes no flash. The Port is the only way to hardware: see PortExample below. Source: MCP2515
@@ -37,6 +38,7 @@
 #include <roio/frame.hpp>
 #include <roio/header.hpp>
 #include <roio/mcp2515_frame.hpp>
+#include <roio/mcp2515_line.hpp>
 #include <roio/mcp2515_order.hpp>
 #include <roio/mcp2515_outcomes.hpp>
 #include <roio/mcp2515_queue.hpp>
@@ -148,6 +150,8 @@ struct Mcp2515Counters {
   Count chip_losses;  ///< Times that the chip was reset, unplugged, or answered nonsense: up to two
                       ///< received frames went with it each time.
   Count discarded;    ///< Frames read and thrown away because the chip was lost meanwhile.
+  Count line_losses;  ///< Times that the interrupt line was found not connected. No frame went with
+                      ///< it, but since then, and until begin() comes again, the driver polls.
 };
 
 /// What to leave in. Derive from it, change what differs, pass it as Traits.
@@ -283,6 +287,8 @@ class Mcp2515 {
                                     uint32_t& measured_hz);
 
   bool running() const { return running_; }
+  /// Whether the interrupt line is there and, as far as is known, works; if not, the driver polls.
+  bool line_is_on() const { return requests_.is_on(); }
   /// As last seen; active for ever without Traits::diagnoses.
   Mcp2515State state() const { return state_of(error_flags_); }
   /// As it is now: one register is read.
@@ -306,7 +312,9 @@ class Mcp2515 {
                                  : Traits::back_to_back ? mcp2515::TxPlaces::six
                                                         : mcp2515::TxPlaces::two>;
   /// Bases, since most often these are empty.
-  struct Requests : mcp2515::Requests<Traits::reports_outcomes>, Order {};
+  struct Requests : mcp2515::Requests<Traits::reports_outcomes>,
+                    Order,
+                    mcp2515::Line<Port::has_interrupt_line> {};
 
   static bool is_urgent(const Mcp2515Frame& frame) {
     return (frame.bytes[0] & mcp2515::priority_bit) == 0 &&
@@ -339,6 +347,12 @@ class Mcp2515 {
   bool is_plausible(uint8_t quick);
   void look();
   ROIO_MCP2515_OUT_OF_LINE void note(uint8_t quick, uint8_t tries);
+
+  // the interrupt line
+  bool is_called();
+  void try_line();
+  bool line_follows(bool low);
+  void lose_line();
 
   // receiving
   bool find_received(bool& looked);

@@ -11,7 +11,7 @@ namespace roio {
 /// frame yet: it may be stuck, or a spike.
 /// @param looked whether READ STATUS has been read in this call.
 ROIO_MCP2515_MEMBER(bool)::find_received(bool& looked) {
-  if (quick_ == 0 && !looked && (!Port::has_interrupt_line || port_.interrupt_line_is_low())) {
+  if (quick_ == 0 && !looked && is_called()) {
     look();
     looked = true;
   }
@@ -37,13 +37,14 @@ ROIO_MCP2515_MEMBER(bool)::fetch(Mcp2515Frame& frame) {
 /// longer on the bus than the look does, so at most one can have come in between, and that one went
 /// to RXB0. Nothing may interrupt the two. The look also tells that the chip was there all the
 /// while, and it is the next call's first.
-/// With an interrupt line: a buffer that is full holds it low, so a line that is high before the
-/// buffer is freed tells of a chip that was reset or fell off; one that is high after it, that
-/// nothing more is there, and spares the look.
+/// With an interrupt line: one that is high after the buffer was freed tells that nothing more is
+/// there, and spares the look. A buffer that is full holds the line low: if it is high before the
+/// buffer is freed, either the chip was reset or fell off, which the look then shows, or the line
+/// is not connected.
 /// @param first RXB0, else RXB1.
-/// @return false: the chip was lost meanwhile, or the line says so; the frame cannot be trusted.
+/// @return false: the chip was lost meanwhile; the frame cannot be trusted.
 ROIO_MCP2515_MEMBER(bool)::read_rx_buffer(bool first, Mcp2515Frame& frame) {
-  bool trusted = true;
+  bool called = true;
   bool looks = true;
   uint8_t quick = 0;
   {
@@ -55,10 +56,10 @@ ROIO_MCP2515_MEMBER(bool)::read_rx_buffer(bool first, Mcp2515Frame& frame) {
     if (frame.length() != 0) {
       transaction.receive(frame.data(), frame.length());
     }
-    trusted = !Port::has_interrupt_line || port_.interrupt_line_is_low();
+    called = is_called();
     typename Port::Uninterrupted together(port_);
     transaction.restart();
-    looks = !Port::has_interrupt_line || !trusted || port_.interrupt_line_is_low();
+    looks = !called || is_called();
     if (looks) {
       transaction.exchange(static_cast<uint8_t>(Instruction::read_status));
       quick = transaction.exchange(0);
@@ -67,6 +68,9 @@ ROIO_MCP2515_MEMBER(bool)::read_rx_buffer(bool first, Mcp2515Frame& frame) {
   if (looks) {
     // Once only: the order follows from this very look, and that the buffer was freed.
     note(quick, 1);
+    if (!called && running_) {
+      lose_line();
+    }
   } else {
     quick_ = 0;
   }
@@ -76,11 +80,10 @@ ROIO_MCP2515_MEMBER(bool)::read_rx_buffer(bool first, Mcp2515Frame& frame) {
     // Perhaps both were full for a while, and a third frame was lost: to be looked at soon.
     check_soon();
   }
-  trusted = trusted && running_;
-  if (!trusted) {
+  if (!running_) {
     count(counters_.discarded);
   }
-  return trusted;
+  return running_;
 }
 
 ROIO_MCP2515_MEMBER(Status)::receive(Frame& frame) {

@@ -119,6 +119,7 @@ ROIO_MCP2515_MEMBER(Status)::start(const Mcp2515Config& config) {
   if (!reset_chip() || !configure(config)) {
     return Status::no_chip;
   }
+  try_line();
   control_ = config.control();
   if (!reach(control_)) {
     // Not later either, when nobody expects it any more.
@@ -126,6 +127,9 @@ ROIO_MCP2515_MEMBER(Status)::start(const Mcp2515Config& config) {
     return Status::wrong_mode;
   }
   running_ = true;
+  if (Port::has_interrupt_line && !requests_.is_on()) {
+    lose_line();
+  }
   return Status::ok;
 }
 

@@ -83,6 +83,37 @@ ROIO_MCP2515_MEMBER(void)::note(uint8_t quick, uint8_t tries) {
   settle(quick);
 }
 
+// --- the interrupt line --------------------------------------------------------------------------
+
+/// Whether the chip asks for a look: always, where there is no line that can be believed.
+ROIO_MCP2515_MEMBER(bool)::is_called() {
+  return !requests_.is_on() || port_.interrupt_line_is_low();
+}
+
+/// Has the chip, in configuration mode, pull the line and let go of it again.
+ROIO_MCP2515_MEMBER(void)::try_line() {
+  if (Port::has_interrupt_line) {
+    const bool falls = line_follows(true);
+    const bool rises = line_follows(false);  // in any case: no flag may stay
+    requests_.set_on(falls && rises);
+  }
+}
+
+/// Has RX0IF, which pulls the line whoever sets it, and looks whether the line does.
+ROIO_MCP2515_MEMBER(bool)::line_follows(bool low) {
+  using mcp2515::Interrupt;
+  constexpr uint8_t pulled = Interrupt::tx_any | Interrupt::rx0;
+  write_register(Register::canintf, low ? pulled : Interrupt::tx_any);
+  read_quick_status();  // the line has its time
+  return port_.interrupt_line_is_low() == low;
+}
+
+/// Until the next begin().
+ROIO_MCP2515_MEMBER(void)::lose_line() {
+  requests_.set_on(false);
+  count(counters_.line_losses);
+}
+
 // --- errors and losses ---------------------------------------------------------------------------
 
 /// What is done at the end of every call that has time.

@@ -50,6 +50,8 @@ class SpiWire {
   void spike_on_interrupt_line() { spike_ = true; }
   /// The interrupt line is at ground, whatever the chip says.
   void hold_interrupt_line_low(bool hold) { line_held_low_ = hold; }
+  /// The interrupt line is not connected, or is again: the microcontroller's pull-up makes it high.
+  void cut_interrupt_line(bool cut) { line_cut_ = cut; }
   /// No fault any more, nor one to come.
   void clear_faults();
 
@@ -80,6 +82,7 @@ class SpiWire {
   std::uint32_t lose_select_in_ = 0;  // 0: not at all
   bool spike_ = false;
   bool line_held_low_ = false;
+  bool line_cut_ = false;
   bool selected_ = false;
   bool first_byte_ = false;
   std::uint64_t bytes_ = 0;
