@@ -49,16 +49,26 @@ class SetPin {
 inline void begin_spi() {
   SPI.begin();
 }
-inline void send_block(const uint8_t* bytes, uint8_t count) {
+inline void spi_start(uint8_t byte) {
+  SPI.transfer(byte);
+}
+inline void spi_put(uint8_t byte) {
+  SPI.transfer(byte);
+}
+inline void spi_send(const uint8_t* bytes, uint8_t count) {
   while (count-- != 0) {
     SPI.transfer(*bytes++);
   }
 }
-inline void receive_block(uint8_t* bytes, uint8_t count) {
+inline uint8_t spi_get() {
+  return SPI.transfer(0);
+}
+inline void spi_receive(uint8_t* bytes, uint8_t count) {
   while (count-- != 0) {
     *bytes++ = SPI.transfer(0);
   }
 }
+inline void spi_finish() {}
 
 /// Interrupts are off while one lives, and on again after it if they were on before, where the core
 /// can tell.

@@ -52,6 +52,7 @@
 #else
 #define ROIO_MCP2515_OUT_OF_LINE
 #endif
+#define ROIO_MCP2515_IN_LINE __attribute__((always_inline))
 
 namespace roio {
 
@@ -63,13 +64,15 @@ namespace roio {
 //     bool interrupt_line_is_low();
 //     void pause(uint16_t microseconds);  // that long at least, also with interrupts off
 //     uint32_t microseconds();  // free running, wraps at 2^32; for check_clock() alone
-//     class Transaction {       // chip select is low as long as one lives
+//     class Transaction {       // chip select is low as long as one lives, or until release()
 //      public:
-//       explicit Transaction(PortExample&);
-//       uint8_t exchange(uint8_t out);
+//       Transaction(PortExample&, uint8_t first);        // the first byte to be sent
+//       void put(uint8_t byte);                          // sends one
 //       void send(const uint8_t* bytes, uint8_t count);  // 1 or more
+//       uint8_t get();                                   // receives one, and sends 0
 //       void receive(uint8_t* bytes, uint8_t count);     // 1 or more
-//       void restart();         // chip select high, then low again
+//       void release();                // chip select high, early
+//       void restart(uint8_t first);   // high, if it is not yet; then low again, and a first byte
 //       ~Transaction();
 //     };
 //     class Uninterrupted {     // while one lives, nothing else runs: interrupts are off
@@ -94,7 +97,7 @@ class Mcp2515Config {
 
   /// The same from its parts, which a compiler sees through.
   /// @param cnf Cnf::word(). @param control Control::of().
-  __attribute__((always_inline))
+  ROIO_MCP2515_IN_LINE
   Mcp2515Config(uint32_t cnf, uint32_t mask, uint32_t first, uint32_t second, uint8_t control)
       : bytes_{mcp2515_register(first, 0),      mcp2515_register(first, 1),
                mcp2515_register(first, 2),      mcp2515_register(first, 3),
@@ -304,6 +307,13 @@ class Mcp2515 {
   using Register = mcp2515::Register;
   using QuickStatus = mcp2515::QuickStatus;
   using Transaction = typename Port::Transaction;
+  /// An access to the registers from one on.
+  struct RegisterAccess : Transaction {
+    ROIO_MCP2515_IN_LINE RegisterAccess(Port& port, Instruction instruction, Register address)
+        : Transaction(port, static_cast<uint8_t>(instruction)) {
+      this->put(static_cast<uint8_t>(address));
+    }
+  };
 
   using Waiting = mcp2515::Waiting<Traits::reports_outcomes>;
   static_assert(!(Traits::only_buffer_0 && Traits::back_to_back),
@@ -328,12 +338,12 @@ class Mcp2515 {
   static Mcp2515State state_of(uint8_t error_flags);
 
   // the chip's registers
-  void open(Transaction& transaction, Instruction instruction, Register address);
   uint8_t read_register(Register address);
   void write_register(Register address, uint8_t value);
   void modify_register(Register address, uint8_t mask, uint8_t value);
   uint8_t read_quick_status();
-  uint8_t exchange_setup(const Mcp2515Config& config);
+  void write_setup(const Mcp2515Config& config);
+  bool setup_is(const Mcp2515Config& config);
 
   // starting
   bool reach(uint8_t control);

@@ -48,8 +48,7 @@ ROIO_MCP2515_MEMBER(bool)::read_rx_buffer(bool first, Mcp2515Frame& frame) {
   bool looks = true;
   uint8_t quick = 0;
   {
-    Transaction transaction(port_);
-    transaction.exchange(mcp2515::read_rx(first));
+    Transaction transaction(port_, mcp2515::read_rx(first));
     transaction.receive(frame.bytes, Mcp2515Frame::head_length);
     frame.limit_length();
     // Only as many as the frame has.
@@ -58,11 +57,11 @@ ROIO_MCP2515_MEMBER(bool)::read_rx_buffer(bool first, Mcp2515Frame& frame) {
     }
     called = is_called();
     typename Port::Uninterrupted together(port_);
-    transaction.restart();
+    transaction.release();
     looks = !called || is_called();
     if (looks) {
-      transaction.exchange(static_cast<uint8_t>(Instruction::read_status));
-      quick = transaction.exchange(0);
+      transaction.restart(static_cast<uint8_t>(Instruction::read_status));
+      quick = transaction.get();
     }
   }
   if (looks) {

@@ -73,18 +73,16 @@ ROIO_MCP2515_MEMBER(bool)::load(const Mcp2515Frame& frame, uint8_t token) {
   }
   const uint8_t length = Traits::all_kinds && frame.is_remote() ? uint8_t{0} : frame.length();
   {
-    Transaction transaction(port_);
+    // With back_to_back from TXBnCTRL on, which is in front of the frame.
+    Transaction transaction(port_, Traits::back_to_back ? static_cast<uint8_t>(Instruction::write)
+                                                        : mcp2515::load_tx(buffer));
     if (Traits::back_to_back) {
-      // TXBnCTRL is in front of the frame.
-      open(transaction, Instruction::write, mcp2515::txbctrl(buffer));
-      transaction.exchange(order().level_of(buffer));
-    } else {
-      transaction.exchange(mcp2515::load_tx(buffer));
+      transaction.put(static_cast<uint8_t>(mcp2515::txbctrl(buffer)));
+      transaction.put(order().level_of(buffer));
     }
     transaction.send(frame.bytes, static_cast<uint8_t>(Mcp2515Frame::head_length + length));
     // By RTS, never by writing TXREQ: errata item 5.
-    transaction.restart();
-    transaction.exchange(mcp2515::request_to_send(buffer));
+    transaction.restart(mcp2515::request_to_send(buffer));
   }
   pending_ = static_cast<uint8_t>(pending_ | QuickStatus::txreq(buffer));
   requests_.keep(buffer, token);

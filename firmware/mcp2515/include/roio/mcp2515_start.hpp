@@ -11,6 +11,11 @@ namespace mcp2515 {
 constexpr uint16_t pause_us = 200;  ///< 128 clocks (8.1) of any oscillator above 640 kHz.
 constexpr uint8_t pauses = 250;     ///< 50 ms: one frame at 5 kbit/s, and 11 bits.
 
+// The registers 00h..0Bh, 10h..1Bh and 20h..2Bh.
+constexpr uint8_t setup_block = 12;
+constexpr uint8_t setup_gap = 4;
+constexpr uint8_t setup_end = 0x30;
+
 /// Sent from the chip to itself to time its oscillator; no five equal bits up to the CRC.
 constexpr uint32_t clock_frame_id = UINT32_C(0x0AAAAAAA);
 constexpr uint8_t clock_frame_data = 0x55;
@@ -32,8 +37,7 @@ ROIO_MCP2515_MEMBER(bool)::reach(uint8_t control) {
   uint8_t pauses = mcp2515::pauses;
   do {
     if (control == Control::after_reset) {
-      Transaction transaction(port_);
-      transaction.exchange(static_cast<uint8_t>(Instruction::reset));
+      const Transaction transaction(port_, static_cast<uint8_t>(Instruction::reset));
     }
     port_.pause(mcp2515::pause_us);
     if (((read_register(Register::canstat) ^ control) & Control::mode_mask) == 0) {
@@ -43,32 +47,26 @@ ROIO_MCP2515_MEMBER(bool)::reach(uint8_t control) {
   return false;
 }
 
-/// Writes filters, masks and timing, and reads them back.
-/// @return 0 when all are as they have to be.
-ROIO_MCP2515_MEMBER(uint8_t)::exchange_setup(const Mcp2515Config& config) {
-  constexpr uint8_t block_length = 12;
-  constexpr uint8_t blocks_end = 0x30;
-  constexpr uint8_t write = static_cast<uint8_t>(Instruction::write);
-  constexpr uint8_t read = static_cast<uint8_t>(Instruction::read);
-  uint8_t instruction = write;
-  for (;;) {
-    uint8_t differences = 0;  // what a chip that is written to answers is nothing
-    uint8_t address = 0;
+/// Writes filters, masks and timing.
+ROIO_MCP2515_MEMBER(void)::write_setup(const Mcp2515Config& config) {
+  for (uint8_t address = 0; address != mcp2515::setup_end; address += mcp2515::setup_gap) {
+    RegisterAccess access(port_, Instruction::write, static_cast<Register>(address));
     do {
-      Transaction transaction(port_);
-      open(transaction, static_cast<Instruction>(instruction), static_cast<Register>(address));
-      do {
-        const uint8_t byte = config[address];
-        differences = static_cast<uint8_t>(differences | (transaction.exchange(byte) ^ byte));
-        ++address;
-      } while ((address & 0x0FU) != block_length);
-      address = static_cast<uint8_t>(address + 0x10U - block_length);
-    } while (address != blocks_end);
-    if (instruction == read) {
-      return differences;
-    }
-    instruction = read;
+      access.put(config[address]);
+    } while (++address % 16U != mcp2515::setup_block);
   }
+}
+
+/// Reads them back.
+ROIO_MCP2515_MEMBER(bool)::setup_is(const Mcp2515Config& config) {
+  uint8_t differences = 0;
+  for (uint8_t address = 0; address != mcp2515::setup_end; address += mcp2515::setup_gap) {
+    RegisterAccess access(port_, Instruction::read, static_cast<Register>(address));
+    do {
+      differences |= static_cast<uint8_t>(access.get() ^ config[address]);
+    } while (++address % 16U != mcp2515::setup_block);
+  }
+  return differences == 0;
 }
 
 /// Writes what the registers have to be, and reads it back.
@@ -83,7 +81,8 @@ ROIO_MCP2515_MEMBER(bool)::configure(const Mcp2515Config& config) {
     write_register(mcp2515::txbctrl(buffer), order().level_of(buffer));
     right = right && read_register(mcp2515::txbctrl(buffer)) == order().level_of(buffer);
   }
-  right = right && exchange_setup(config) == 0;
+  write_setup(config);
+  right = right && setup_is(config);
   if (Port::has_interrupt_line) {
     constexpr uint8_t received = Interrupt::rx0 | Interrupt::rx1;
     write_register(Register::caninte, received);
@@ -214,8 +213,7 @@ ROIO_MCP2515_MEMBER(void)::load_clock_frames() {
       byte = mcp2515::clock_frame_data;
     }
     const Mcp2515Frame bytes = mcp2515::to_chip(frame);
-    Transaction transaction(port_);
-    transaction.exchange(mcp2515::load_tx(buffer));
+    Transaction transaction(port_, mcp2515::load_tx(buffer));
     transaction.send(bytes.bytes, sizeof bytes.bytes);
   }
 }
@@ -226,8 +224,7 @@ ROIO_MCP2515_MEMBER(uint32_t)::time_clock_frames(uint32_t limit_us) {
   constexpr uint8_t requested =
       QuickStatus::txreq(1) | QuickStatus::txreq(2) | QuickStatus::txreq(4);
   {
-    Transaction transaction(port_);
-    transaction.exchange(mcp2515::request_to_send(mcp2515::all_buffers));
+    const Transaction transaction(port_, mcp2515::request_to_send(mcp2515::all_buffers));
   }
   const uint32_t start = port_.microseconds();
   uint32_t elapsed_us = 0;

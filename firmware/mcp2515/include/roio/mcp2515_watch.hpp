@@ -14,35 +14,25 @@ constexpr uint8_t calls_at_most = 192;  ///< Where there is always a frame to be
 
 // --- the chip's registers ------------------------------------------------------------------------
 
-ROIO_MCP2515_MEMBER(void)::open(Transaction& transaction, Instruction instruction,
-                                Register address) {
-  transaction.exchange(static_cast<uint8_t>(instruction));
-  transaction.exchange(static_cast<uint8_t>(address));
-}
-
 ROIO_MCP2515_MEMBER(uint8_t)::read_register(Register address) {
-  Transaction transaction(port_);
-  open(transaction, Instruction::read, address);
-  return transaction.exchange(0);
+  RegisterAccess access(port_, Instruction::read, address);
+  return access.get();
 }
 
 ROIO_MCP2515_MEMBER(void)::write_register(Register address, uint8_t value) {
-  Transaction transaction(port_);
-  open(transaction, Instruction::write, address);
-  transaction.exchange(value);
+  RegisterAccess access(port_, Instruction::write, address);
+  access.put(value);
 }
 
 ROIO_MCP2515_MEMBER(void)::modify_register(Register address, uint8_t mask, uint8_t value) {
-  Transaction transaction(port_);
-  open(transaction, Instruction::bit_modify, address);
-  transaction.exchange(mask);
-  transaction.exchange(value);
+  RegisterAccess access(port_, Instruction::bit_modify, address);
+  access.put(mask);
+  access.put(value);
 }
 
 ROIO_MCP2515_MEMBER(uint8_t)::read_quick_status() {
-  Transaction transaction(port_);
-  transaction.exchange(static_cast<uint8_t>(Instruction::read_status));
-  return transaction.exchange(0);
+  Transaction transaction(port_, static_cast<uint8_t>(Instruction::read_status));
+  return transaction.get();
 }
 
 ROIO_MCP2515_MEMBER(void)::read_error_counters(uint8_t& transmit, uint8_t& receive) {

@@ -1,0 +1,155 @@
+/// The SPI of an AVR, as fast as it goes. Up to 20 MHz a byte has half the processor's clock, and it
+/// is known to the cycle when it is over: so cycles are counted, 18 from byte to byte, where asking
+/// for SPIF takes 21 and more. (Read 17 cycles after the write at the earliest, written again after
+/// 18: docs/internals/simulator.md, "Boards".) An interrupt makes it longer, which does no harm.
+///
+/// spi_start() and spi_put() return while their byte is under way; then comes any of these, or
+/// spi_finish(). With spi_get() and spi_receive() nothing is under way any more. SPIF is cleared by
+/// then: who shares SPI waits for it.
+#ifndef ROIO_ARDUINO_SPI_AVR_HPP
+#define ROIO_ARDUINO_SPI_AVR_HPP
+
+#include <Arduino.h>
+#include <SPI.h>
+
+namespace roio {
+
+#if F_CPU <= 20000000
+
+/// What the functions below call, in one piece because they share it. Each entry may come as soon as
+/// 8 cycles after the write to SPDR of the byte that is under way: RET takes 4 and RCALL 3.
+__attribute__((naked, noinline)) inline void spi_by_counting() {
+  __asm__ volatile(
+      // r24: the byte.
+      ".weak roio_spi_put\n"
+      "roio_spi_put:\n"
+      "  mov __tmp_reg__, r24\n"
+      "  ldi r24, 1\n"
+      "  rjmp 2f\n"
+      // X: from where. r24: how many.
+      ".weak roio_spi_send\n"
+      "roio_spi_send:\n"
+      "1: ld __tmp_reg__, X+\n"
+      "2: rcall 9f\n"     // 7 cycles
+      "  rjmp .+0\n"      // 2
+      "  rjmp .+0\n"
+      "  nop\n"
+      "  out %[spdr], __tmp_reg__\n"
+      "  dec r24\n"
+      "  brne 1b\n"
+      "9: ret\n"
+      // Returns in r24, and stores where no harm is done: at address 0 is r0.
+      ".weak roio_spi_get\n"
+      "roio_spi_get:\n"
+      "  ldi r24, 1\n"
+      "  ldi r26, 0\n"
+      "  ldi r27, 0\n"
+      // X: to where. r24: how many; then the last one.
+      ".weak roio_spi_receive\n"
+      "roio_spi_receive:\n"
+      "  rcall 9b\n"
+      "  rjmp .+0\n"
+      "  nop\n"
+      "  out %[spdr], __zero_reg__\n"
+      "  rjmp .+0\n"
+      "  rjmp .+0\n"
+      "3: rcall 9b\n"
+      "  dec r24\n"
+      "  breq 5f\n"
+      "  rjmp .+0\n"
+      "  nop\n"
+      // In this order: an interrupt between the two may take longer than a byte.
+      "  in __tmp_reg__, %[spdr]\n"
+      "  out %[spdr], __zero_reg__\n"
+      "  st X+, __tmp_reg__\n"
+      "  rjmp 3b\n"
+      "5: rjmp .+0\n"
+      "  nop\n"
+      "  in __tmp_reg__, %[spsr]\n"
+      "  in r24, %[spdr]\n"
+      "  st X, r24\n"
+      "  ret\n"
+      ".weak roio_spi_finish\n"
+      "roio_spi_finish:\n"
+      "  rcall 9b\n"
+      "  rjmp .+0\n"
+      "  nop\n"
+      "  in __tmp_reg__, %[spsr]\n"
+      "  in __tmp_reg__, %[spdr]\n"
+      "  ret\n"
+      :
+      : [spdr] "I"(_SFR_IO_ADDR(SPDR)), [spsr] "I"(_SFR_IO_ADDR(SPSR)));
+}
+
+// Not templates: there, GCC 5 forgets that a variable has a register.
+
+inline __attribute__((always_inline)) void spi_put(uint8_t byte) {
+  register uint8_t value __asm__("r24") = byte;
+  __asm__ volatile("%~call roio_spi_put" : "+r"(value) : "i"(spi_by_counting) : "r0");
+}
+
+/// @param count 1 or more.
+inline __attribute__((always_inline)) void spi_send(const uint8_t* bytes, uint8_t count) {
+  register uint8_t left __asm__("r24") = count;
+  __asm__ volatile("%~call roio_spi_send"
+                   : "+x"(bytes), "+r"(left)
+                   : "i"(spi_by_counting)
+                   : "r0", "memory");
+}
+
+inline __attribute__((always_inline)) uint8_t spi_get() {
+  register uint8_t value __asm__("r24");
+  __asm__ volatile("%~call roio_spi_get"
+                   : "=r"(value)
+                   : "i"(spi_by_counting)
+                   : "r0", "r26", "r27");
+  return value;
+}
+
+/// @param count 1 or more.
+inline __attribute__((always_inline)) void spi_receive(uint8_t* bytes, uint8_t count) {
+  register uint8_t left __asm__("r24") = count;
+  __asm__ volatile("%~call roio_spi_receive"
+                   : "+x"(bytes), "+r"(left)
+                   : "i"(spi_by_counting)
+                   : "r0", "memory");
+}
+
+inline __attribute__((always_inline)) void spi_finish() {
+  __asm__ volatile("%~call roio_spi_finish" : : "i"(spi_by_counting) : "r0");
+}
+
+#else
+
+// SPI has less than half the clock. SPI.transfer() of a buffer takes 60 bytes of flash and overwrites
+// what it sends.
+
+inline __attribute__((noinline)) void spi_finish() {
+  while ((SPSR & (1U << SPIF)) == 0) {
+  }
+  (void)SPDR;
+}
+
+inline __attribute__((noinline)) void spi_put(uint8_t byte) {
+  spi_finish();
+  SPDR = byte;
+}
+
+inline __attribute__((noinline)) uint8_t spi_get() {
+  spi_put(0);
+  while ((SPSR & (1U << SPIF)) == 0) {
+  }
+  return SPDR;
+}
+#error not yet
+
+#endif
+
+/// Begins with a byte. Its caller has to be a function of its own, because of the 8 cycles.
+inline __attribute__((always_inline)) void spi_start(uint8_t byte) {
+  SPDR = byte;
+}
+
+}  // namespace roio
+
+#endif
