@@ -16,9 +16,10 @@
 ///     if (roio.receive(message) == Roio::Status::ok) { ... }
 ///   }
 ///
-/// Roio roio(10) is the same, with the calls of the first Roio library (2014) besides. All names that
-/// a sketch needs are members of class Roio: Roio::Message, Roio::Status::ok, Roio::Address{0, 2}.
-/// The reference is roio/arduino_node.hpp, roio/arduino_message.hpp and roio/arduino_classic.hpp.
+/// Roio roio(10) is the same, with the calls of the first Roio library (2014) besides. All names
+/// that a sketch needs are members of class Roio: Roio::Message, Roio::Status::ok, Roio::Address{0,
+/// 2}. The reference is roio/arduino_node.hpp, roio/arduino_message.hpp and
+/// roio/arduino_classic.hpp.
 #ifndef ROIO_H
 #define ROIO_H
 
@@ -37,6 +38,13 @@
 
 /// Roio roio(10);
 using Roio = roio::ClassicNode;
+
+// For changeMode(), as in 2014; Roio::Mode has them, too.
+constexpr uint8_t CANMODE_NORMAL = 0x00;
+constexpr uint8_t CANMODE_SLEEP = 0x20;
+constexpr uint8_t CANMODE_LOOP = 0x40;
+constexpr uint8_t CANMODE_LISTEN = 0x60;
+constexpr uint8_t CANMODE_CONFIG = 0x80;
 
 /// What RoioOn<> leaves in or out: derive from it, and change what differs.
 using RoioOptions = roio::ArduinoOptions;

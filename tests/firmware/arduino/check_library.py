@@ -213,10 +213,12 @@ class Headers:
                 if not name.startswith(("~", "operator")) and not name.endswith("_")}
 
     def values(self):
-        """Of the enums, but for MessageClass: its `message` is what sketches call their messages."""
+        """Of the enums, but for MessageClass: its `message` is what sketches call their messages.
+        And the constants of 2014."""
         enums = {target.split("::")[-1] for name, target in self.aliases().items()
                  if name != "MessageClass"}
-        return {tag.name for tag in self.tags if tag.kind == "e" and tag.scope in enums}
+        constants = {tag.name for tag in self.top if tag.kind == "v"}
+        return constants | {tag.name for tag in self.tags if tag.kind == "e" and tag.scope in enums}
 
 
 class Keywords(unittest.TestCase):

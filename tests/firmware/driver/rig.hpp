@@ -155,6 +155,19 @@ struct Rig {
   std::uint64_t transactions_marked_ = 0;
 };
 
+/// A frame each way.
+template <typename AnyRig>
+void expect_it_works(AnyRig& rig) {
+  rig.peer_received.clear();
+  rig.peer_sends(
+      {numbered(7), {0x10002001, FrameKind::extended, 0, {}}, numbered(8, 3, to_everybody)});
+  EXPECT_EQ(rig.receive_all(), (std::vector{numbered(7), numbered(8, 3, to_everybody)}))
+      << "what is for the node, and nothing else";
+  ASSERT_EQ(rig.can.send(numbered(9)), Status::ok);
+  rig.bus.run_for(milliseconds(2));
+  EXPECT_EQ(rig.peer_received, std::vector{numbered(9)});
+}
+
 }  // namespace roio::test
 
 #endif

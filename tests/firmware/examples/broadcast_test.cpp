@@ -71,7 +71,8 @@ TEST(BroadcastUno, SaysThatThereIsNoChipAndBeginsWhenThereIs) {
   SketchRig rig(sim::BoardKind::uno, "Broadcast");
   rig.board.set_chip_fault(sim::SpiWire::Fault::stuck_high);
   EXPECT_EQ(rig.run_for_lines(500ms),
-            (Texts{"This is 0.4", "MCP2515 not answering: check the wiring and the CS pin"}));
+            (Texts{"This is 0.4",
+                   "Cannot begin, no controller answers: check the wiring and the CS pin"}));
   rig.board.set_chip_fault(sim::SpiWire::Fault::none);
   rig.received.clear();
   rig.bus.run_for(1s);

@@ -50,15 +50,15 @@ TEST(Diagnostics, AllIsWellAndWhatWasCounted) {
       rig.run_for_lines(3500ms),
       (Texts{well,
              "  sent 1, received 0, lost 0, bus-offs 0; error-active, error counters 0 transmit, 0 "
-             "receive",
+             "receive; INT connected",
              well,
              "  sent 2, received 0, lost 0, bus-offs 0; error-active, error counters 0 transmit, 0 "
-             "receive"}));
+             "receive; INT connected"}));
   rig.send({0, 250}, {1, 2, 3});
   EXPECT_EQ(rig.run_for_lines(1s),
             (Texts{well,
                    "  sent 3, received 1, lost 0, bus-offs 0; error-active, error counters 0 "
-                   "transmit, 0 receive"}));
+                   "transmit, 0 receive; INT connected"}));
   EXPECT_EQ(rig.received, Texts(4, "0.250 > 0.250:"));
 }
 
@@ -71,6 +71,36 @@ TEST(Diagnostics, AllIsWellOnAMega) {
 TEST(Diagnostics, SendsItsMessagesOnALeonardo) {
   DiagnosticsRig rig({}, sim::BoardKind::leonardo);
   EXPECT_EQ(rig.run(3500ms), Texts(3, "0.250 > 0.250:"));
+}
+
+struct InterruptPin {
+  const char* name;
+  std::optional<bool> level;
+};
+class DiagnosticsWithoutInt : public testing::TestWithParam<InterruptPin> {};
+INSTANTIATE_TEST_SUITE_P(, DiagnosticsWithoutInt,
+                         testing::Values(InterruptPin{"NotWired", std::nullopt},
+                                         InterruptPin{"StuckHigh", true},
+                                         InterruptPin{"StuckLow", false}),
+                         [](const auto& row) { return row.param.name; });
+
+TEST_P(DiagnosticsWithoutInt, SaysSoAndGetsEveryMessage) {
+  sim::BoardOptions options;
+  options.interrupt_pin = std::nullopt;
+  DiagnosticsRig rig(options);
+  if (GetParam().level) {
+    rig.board.set_pin(2, *GetParam().level);
+  }
+  rig.settle();
+  for (std::uint8_t i = 0; i < 20; ++i) {
+    rig.send({0, 250}, {i, 2, 3, 4, 5, 6, 7, 8});
+  }
+  const Texts lines = rig.run_for_lines(1s);
+  ASSERT_EQ(lines.size(), 2U);
+  EXPECT_EQ(lines[0], well);
+  EXPECT_EQ(lines[1],
+            "  sent 2, received 20, lost 0, bus-offs 0; error-active, error counters 0 transmit, 0 "
+            "receive; INT not connected");
 }
 
 TEST(Diagnostics, NoChip) {
@@ -209,7 +239,7 @@ TEST(Diagnostics, TellsTheStateBesideTheVerdict) {
   EXPECT_EQ(
       alone.back(),
       "  sent 2, received 0, lost 0, bus-offs 0; error-passive, error counters 128 transmit, 0 "
-      "receive");
+      "receive; INT connected");
   rig.pc.controller().set_mode(sim::Controller::Mode::normal);
   const Texts again = rig.run_for_lines(3s);
   ASSERT_EQ(again.size(), 6U);
@@ -217,7 +247,7 @@ TEST(Diagnostics, TellsTheStateBesideTheVerdict) {
   EXPECT_EQ(
       again[5],
       "  sent 6, received 0, lost 0, bus-offs 0; error-active, with a warning, error counters "
-      "124 transmit, 0 receive");
+      "124 transmit, 0 receive; INT connected");
 }
 
 }  // namespace

@@ -8,7 +8,9 @@ namespace {
 /// Two nodes that talk, since the sniffer acknowledges nothing.
 class SnifferRig : public SketchRig {
  public:
-  explicit SnifferRig(sim::BoardKind kind = sim::BoardKind::uno) : SketchRig(kind, "Sniffer") {
+  explicit SnifferRig(sim::BoardKind kind = sim::BoardKind::uno,
+                      const sim::BoardOptions& options = {})
+      : SketchRig(kind, "Sniffer", options) {
     bus.run_for(50ms);
   }
 
@@ -69,6 +71,22 @@ TEST(Sniffer, TakesNoPart) {
   EXPECT_EQ(rig.board.chip().events().sent, 0U);
 }
 
+TEST(Sniffer, WithoutIntPrintsThemAllAndSaysThatItIsMissing) {
+  for (const bool stuck_low : {false, true}) {
+    sim::BoardOptions options;
+    options.interrupt_pin = std::nullopt;
+    SnifferRig rig(sim::BoardKind::uno, options);
+    EXPECT_EQ(rig.lines, Texts{"! INT not connected: slower, and may lose more"});
+    if (stuck_low) {
+      rig.board.set_pin(2, false);
+    }
+    for (const Row& row : rows) {
+      rig.pc.send(row.frame);
+      EXPECT_EQ(rig.run_for_lines(10ms), Texts{row.line});
+    }
+  }
+}
+
 // As long a line as there is takes 5 ms; what comes faster waits, up to 60 frames, none lost.
 TEST(Sniffer, PrintsABurstLater) {
   SnifferRig rig;
@@ -118,7 +136,7 @@ TEST(Sniffer, SaysThatThereIsNoChipAndListensWhenThereIs) {
   SketchRig rig(sim::BoardKind::uno, "Sniffer");
   rig.board.set_chip_fault(sim::SpiWire::Fault::stuck_high);
   EXPECT_EQ(rig.run_for_lines(500ms),
-            Texts{"! MCP2515 not answering: check the wiring and the CS pin"});
+            Texts{"! Cannot begin, no controller answers: check the wiring and the CS pin"});
   rig.board.set_chip_fault(sim::SpiWire::Fault::none);
   rig.bus.run_for(200ms);
   sim::HostNode listener(rig.bus, bitrate_bps);

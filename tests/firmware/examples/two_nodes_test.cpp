@@ -4,8 +4,8 @@
 namespace roio::test {
 namespace {
 
-constexpr const char* no_first = "The first MCP2515 (CS on 10) does not answer";
-constexpr const char* no_second = "The second MCP2515 (CS on 9) does not answer";
+constexpr const char* no_first = "The first MCP2515 (CS on 10): no controller answers";
+constexpr const char* no_second = "The second MCP2515 (CS on 9): no controller answers";
 
 TEST(TwoNodes, SaysWhichChipIsMissing) {
   SketchRig only_first(sim::BoardKind::uno, "TwoNodes");

@@ -61,7 +61,7 @@ class Load {
     report.accepted = board_.chip().events().accepted;
     report.overflowed = board_.chip().events().overflowed;
     const std::vector<std::uint64_t> numbers = printed_.numbers();
-    if (numbers.size() != 8 || !board_.violations().empty() ||
+    if (numbers.size() != 9 || !board_.violations().empty() ||
         !board_.chip().violations().empty()) {
       throw std::runtime_error("the sketch did not print its figures, or misused its hardware");
     }
@@ -72,6 +72,7 @@ class Load {
     report.counted_received = numbers[4];
     report.counted_overflows = numbers[6];
     report.chip_losses = numbers[7];
+    report.line_losses = numbers[8];
     return report;
   }
 

@@ -27,6 +27,7 @@ struct SaturationReport {
   std::uint64_t counted_received = 0;  ///< As the driver counts them; modulo 65536.
   std::uint64_t counted_overflows = 0;
   std::uint64_t chip_losses = 0;
+  std::uint64_t line_losses = 0;
   double left_over = 0;  ///< Of all the processor's time: work done by the sketch, 0..1.
 };
 

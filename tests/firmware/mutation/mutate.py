@@ -90,8 +90,8 @@ MUTATIONS = {
         OTHER, ["ChipLoss.AFrameReadFromAChipThatWasResetIsDiscarded"]),
     "a_line_that_is_off_throws_no_frame_away": (
         "hand out a frame of a chip that answers, whatever the interrupt line says",
-        "  return running_;\n}\n\nROIO_MCP2515_MEMBER(Status)::receive(Frame& frame) {",
-        "  return running_ && called;\n}\n\nROIO_MCP2515_MEMBER(Status)::receive(Frame& frame) {",
+        "  if (!running_) {\n    count(counters_.discarded);",
+        "  if (!running_ || !called) {\n    count(counters_.discarded);",
         LINE, ["InterruptLineOff.FromSomeTimeOn/NotConnected",
                "InterruptLine.ComesOffWhileAFrameIsRead", "InterruptLine.ThatIsLooseLosesNothing"]),
     "a_line_that_is_off_is_left_alone": (
@@ -132,9 +132,9 @@ MUTATIONS = {
         OTHER, ["ChipLoss.ALineStuckHighIsNotTakenForAllBuffersInUse"]),
     "nothing_is_cleared_that_was_not_read": (
         "leave the chip's receive flags alone",
-        "  return trusted;",
-        "  modify_register(Register::canintf, first ? 1 : 2, 0);\n"
-        "  return trusted;",
+        "    check_soon();\n  }\n  return true;",
+        "    check_soon();\n  }\n  modify_register(Register::canintf, first ? 1 : 2, 0);\n"
+        "  return true;",
         RECEIVE, ["ReceiveOrder.EveryInterleavingWhilePolling"]),
     "the_second_frame_goes_behind_the_first": (
         "send a second frame from the buffer behind the first",

@@ -32,8 +32,8 @@ constexpr uint32_t periodMs = 1000;
 RoioOn<10> roio;  // CS
 uint8_t count = 0;
 
-bool begin() {
-  return roio.begin(Roio::bitTiming<crystal, bitrate>(), own) == Roio::Status::ok;
+Roio::Status begin() {
+  return roio.begin(Roio::bitTiming<crystal, bitrate>(), own);
 }
 
 void print(Roio::Address address) {
@@ -67,14 +67,17 @@ void setup() {
   Serial.print(F("This is "));
   print(own);
   Serial.println();
-  if (!begin()) {
-    Serial.println(F("MCP2515 not answering: check the wiring and the CS pin"));
+  const Roio::Status status = begin();
+  if (status != Roio::Status::ok) {
+    Serial.print(F("Cannot begin, "));
+    Serial.print(Roio::toString(status));
+    Serial.println(F(": check the wiring and the CS pin"));
   }
 }
 
 void loop() {
   // When the chip was not there, or has been without power.
-  if (!roio.running() && !begin()) {
+  if (!roio.running() && begin() != Roio::Status::ok) {
     return;
   }
   Roio::Message message;

@@ -9,7 +9,8 @@
     SI  (MOSI)        11     ICSP 4      51
     SO  (MISO)        12     ICSP 1      50
     CS                10     10          10
-  Between CANH and CANL belong 120 ohms at each end of the bus: 60 ohms in all, with power off.
+    INT               2      2           2
+  It works without INT, and says so. Between CANH and CANL belong 120 ohms at each end of the bus: 60 ohms in all, with power off.
 
   Address 0.250, 500 kbit/s; the module's crystal is named below. Serial at 115200.
 
@@ -33,7 +34,7 @@ struct Options : RoioOptions {
   static constexpr bool diagnoses = true;  // errors on the bus are counted
 };
 
-RoioOn<10, -1, Options> roio;  // CS
+RoioOn<10, 2, Options> roio;  // CS, INT
 
 // --- starting ------------------------------------------------------------------------------------
 
@@ -117,7 +118,8 @@ void printCounters(uint8_t transmitErrors, uint8_t receiveErrors) {
   printState();
   printNumber(F(", error counters "), transmitErrors);
   printNumber(F(" transmit, "), receiveErrors);
-  Serial.println(F(" receive"));
+  Serial.print(F(" receive; "));
+  Serial.println(roio.interruptIsConnected() ? F("INT connected") : F("INT not connected"));
 }
 
 void report() {
@@ -141,7 +143,8 @@ void report() {
 void sendTest() {
   const Roio::Status status = roio.send(Roio::Message(own, nullptr, 0));
   if (status != Roio::Status::ok && status != Roio::Status::full) {  // full: some still wait
-    Serial.println(F("The test message was refused"));
+    Serial.print(F("The test message was refused: "));
+    Serial.println(Roio::toString(status));
   }
 }
 

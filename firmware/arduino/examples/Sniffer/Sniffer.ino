@@ -23,6 +23,8 @@
   The bus may be faster than the serial port. So 60 frames wait for it, and what finds no room
   there is counted, and told once a second:
     ! 120 frames not printed, 3 times some lost by the chip
+  And when the wire to INT is not there, or comes off:
+    ! INT not connected: slower, and may lose more
 */
 #include <Roio.h>
 
@@ -43,9 +45,9 @@ struct Options : RoioOptions {
 RoioOn<10, 2, Options> roio;  // CS, INT
 uint32_t notPrinted = 0;
 
-bool begin() {
+Roio::Status begin() {
   return roio.begin(Roio::bitTiming<crystal, bitrate>(), unused, Roio::everything(),
-                    Roio::Mode::listen_only) == Roio::Status::ok;
+                    Roio::Mode::listen_only);
 }
 
 // The chip itself holds two frames, so this must be called more often than they come: between any
@@ -154,16 +156,33 @@ void printLosses() {
   Serial.println(F(" times some lost by the chip"));
 }
 
+// Once for each time that it was found so.
+bool mustTellInt() {
+  static uint16_t told = 0;
+  const bool isNew = roio.counters().line_losses != told;
+  told = roio.counters().line_losses;
+  return isNew;
+}
+
+void printInt() {
+  Serial.print(F("! INT not connected: "));
+  fetch();
+  Serial.println(F("slower, and may lose more"));
+}
+
 void setup() {
   Serial.begin(115200);
-  if (!begin()) {
-    Serial.println(F("! MCP2515 not answering: check the wiring and the CS pin"));
+  const Roio::Status status = begin();
+  if (status != Roio::Status::ok) {
+    Serial.print(F("! Cannot begin, "));
+    Serial.print(Roio::toString(status));
+    Serial.println(F(": check the wiring and the CS pin"));
   }
 }
 
 void loop() {
   // When the chip was not there, or has been without power.
-  if (!roio.running() && !begin()) {
+  if (!roio.running() && begin() != Roio::Status::ok) {
     return;
   }
   fetch();
@@ -173,6 +192,8 @@ void loop() {
   Roio::Frame frame;
   if (mustTellLosses()) {
     printLosses();
+  } else if (mustTellInt()) {
+    printInt();
   } else if (roio.receive(frame) == Roio::Status::ok) {
     printFrame(frame);
   }

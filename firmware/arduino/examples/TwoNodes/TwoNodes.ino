@@ -38,20 +38,21 @@ uint8_t number = 0;
 bool underWay = false;
 uint32_t sentAtUs = 0;
 
-bool begin(Roio& node, Roio::Address address) {
-  return node.running() ||
-         node.begin(Roio::bitTiming<crystal, bitrate>(), address) == Roio::Status::ok;
+bool begin(Roio& node, Roio::Address address, const __FlashStringHelper* name) {
+  if (node.running()) {
+    return true;
+  }
+  const Roio::Status status = node.begin(Roio::bitTiming<crystal, bitrate>(), address);
+  if (status != Roio::Status::ok) {
+    Serial.print(name);
+    Serial.println(Roio::toString(status));
+  }
+  return status == Roio::Status::ok;
 }
 
 bool beginBoth() {
-  const bool hasFirst = begin(first, firstAddress);
-  const bool hasSecond = begin(second, secondAddress);
-  if (!hasFirst) {
-    Serial.println(F("The first MCP2515 (CS on 10) does not answer"));
-  }
-  if (!hasSecond) {
-    Serial.println(F("The second MCP2515 (CS on 9) does not answer"));
-  }
+  const bool hasFirst = begin(first, firstAddress, F("The first MCP2515 (CS on 10): "));
+  const bool hasSecond = begin(second, secondAddress, F("The second MCP2515 (CS on 9): "));
   return hasFirst && hasSecond;
 }
 

@@ -73,7 +73,7 @@ class ArduinoNode {
   /// Starts the chip, or starts it again: roio.begin<16000000, 500000>(own). Takes 1 ms when all is
   /// well, 60 ms at most, or twice that on a bus that is never idle.
   /// @tparam OscHz the crystal's frequency, as printed on it.
-  /// @return ok; bad_argument: no valid address (subnet 0..31, node 0..254), or configuration mode;
+  /// @return ok; bad_argument: no valid address (subnet 0..31, node 0..254), or a mode that rests;
   ///         no_chip; wrong_mode. As Mcp2515::begin().
   template <uint32_t OscHz, uint32_t BitrateBps>
   ROIO_IN_LINE Status begin(Address own, Mode mode = Mode::normal) {
@@ -81,7 +81,7 @@ class ArduinoNode {
     return begin_plain(cnf, own, mode);
   }
   /// With a bit timing of one's own.
-  /// @return ok; bad_argument: no valid address (subnet 0..31, node 0..254), or configuration mode;
+  /// @return ok; bad_argument: no valid address (subnet 0..31, node 0..254), or a mode that rests;
   ///         bad_timing; no_chip; wrong_mode. As Mcp2515::begin().
   ROIO_IN_LINE Status begin(const BitTiming& timing, Address own, Mode mode = Mode::normal) {
     return begin_plain(mcp2515::Cnf::word(timing), own, mode);
@@ -109,8 +109,9 @@ class ArduinoNode {
     return status;
   }
 
-  /// As in the library of 2014, and with its bit timing.
-  /// @param kbps 1000, 500, 250, 125 or 10, with a 16 MHz crystal.
+  /// As in the library of 2014, and with its bit timing: for a 16 MHz crystal.
+  /// @param kbps from 1000 on it means 1000, from 500 on 500, from 250 on 250, from 125 on 125, and
+  ///        else 10.
   ROIO_IN_LINE Status begin(uint16_t kbps, uint8_t address, uint8_t subnet) {
     return begin_plain(original_cnf(kbps), Address{subnet, address}, Mode::normal);
   }
@@ -173,8 +174,45 @@ class ArduinoNode {
     return driver_.check_clock(Mcp2515Config(timing, mcp2515_filters_of(own_)), osc_hz,
                                measured_hz);
   }
+  /// Whether the chip's INT is connected to the pin that was named for it. If not, each call asks
+  /// the chip, and nothing else changes. Known from begin() on, and noticed when a wire comes off
+  /// later.
+  bool interruptIsConnected() const { return driver_.line_is_on(); }
+  /// Whether the chip's pins RX0BF and RX1BF are driven, and low while their buffer is full, for a
+  /// light at each. Not driven after begin().
+  void showFullBuffers(bool shows = true) { driver_.show_full_buffers(shows); }
+
+  // --- other modes -------------------------------------------------------------------------------
+
   /// Another mode: Mcp2515::change_mode().
   ROIO_NODISCARD Status changeMode(Mode mode) { return driver_.change_mode(mode); }
+
+  /// Puts the chip to sleep, when all is sent: some uA, until wake(). receive() until it is empty
+  /// before. The next message on the bus wakes the chip and makes INT low, for a processor that
+  /// sleeps, too; but the chip loses that message, and then only listens, until wake().
+  /// @return ok, also when the bus has woken it already; full: something is still to be sent:
+  /// poll(),
+  ///         and try again; no_chip, wrong_mode: begin() again.
+  ROIO_NODISCARD Status sleep() { return changeMode(Mode::asleep); }
+  /// Whether it still sleeps: the bus may have woken it.
+  bool isAsleep() { return driver_.is_asleep(); }
+  /// Takes part again, be it asleep or woken by the bus: takes 1 ms and what the crystal needs to
+  /// start, or 100 ms when all goes wrong.
+  /// @return ok; no_chip: it has been without power, or does not wake; wrong_mode: the bus is never
+  ///         quiet: begin() again.
+  ROIO_NODISCARD Status wake(Mode mode = Mode::normal) { return changeMode(mode); }
+
+  // --- words -------------------------------------------------------------------------------------
+
+  /// What a status says, for Serial.println(): a short phrase in lower case.
+  static const __FlashStringHelper* toString(Status status) {
+    const char* text = PSTR(ROIO_STATUS_TEXTS);
+    for (uint8_t number = text_number(status); number != 0; --number) {
+      while (pgm_read_byte(text++) != 0) {
+      }
+    }
+    return reinterpret_cast<const __FlashStringHelper*>(text);
+  }
 
  private:
   // Chosen among numbers, which a compiler sees through.
@@ -184,15 +222,14 @@ class ArduinoNode {
     constexpr uint32_t at_250 = mcp2515::Cnf::word(original_bit_timing(250));
     constexpr uint32_t at_125 = mcp2515::Cnf::word(original_bit_timing(125));
     constexpr uint32_t at_10 = mcp2515::Cnf::word(original_bit_timing(10));
-    return kbps == 1000  ? at_1000
-           : kbps == 500 ? at_500
-           : kbps == 250 ? at_250
-           : kbps == 125 ? at_125
-           : kbps == 10  ? at_10
-                         : 0;
+    return kbps >= 1000  ? at_1000
+           : kbps >= 500 ? at_500
+           : kbps >= 250 ? at_250
+           : kbps >= 125 ? at_125
+                         : at_10;
   }
   ROIO_IN_LINE Status begin_plain(uint32_t cnf, Address own, Mode mode) {
-    if (!is_valid_source(own) || mode == Mode::configuration) {
+    if (!is_valid_source(own) || mcp2515::is_rest(mode)) {
       return Status::bad_argument;
     }
     if (cnf == 0) {

@@ -218,8 +218,8 @@ class Mcp2515 {
   /// as unknown). What waits in the queues stays. May be called again at any time, and must be when
   /// poll() says that the chip is lost. Takes 1 ms when all is well; at most 60 ms for a chip that
   /// does not answer, and as long again for a bus that is never idle for 11 bits. (SPI at 1 MHz.)
-  /// @return ok. bad_timing: the chip cannot run at this timing; bad_argument: configuration mode,
-  ///         or one_shot without reports_outcomes; after these two nothing was touched.
+  /// @return ok. bad_timing: the chip cannot run at this timing; bad_argument: configuration or
+  ///         sleep mode, or one_shot without reports_outcomes; after these two nothing was touched.
   ///         no_chip: no answer, or not what was written. wrong_mode: the mode was not entered (the
   ///         bus is stuck, or has no transceiver).
   ROIO_NODISCARD Status begin(const Mcp2515Config& config);
@@ -252,10 +252,19 @@ class Mcp2515 {
   /// @param frame one that may be sent: not looked at.
   ROIO_NODISCARD Status send(const Mcp2515Frame& frame, uint8_t token = 0);
 
-  /// Enters another mode (normal, listen_only or loopback), as soon as the bus is idle for 11 bits;
-  /// waits for it as begin() does. While it only listens the chip's filters do not hold (10.3).
-  /// @return ok; bad_argument: configuration mode; no_chip; wrong_mode: not entered: begin() again.
+  /// Enters another mode. normal, listen_only and loopback: as soon as the bus is idle for 11 bits;
+  /// waits for it as begin() does. In listen_only the chip's filters do not hold (10.3).
+  /// asleep and configuration: the chip leaves the bus and keeps its setup; running() is false, and
+  /// the calls above say no_chip, until change_mode() takes it up again, or begin() starts it anew. Asleep it is woken by the next frame on the bus, which is
+  /// lost, and pulls its interrupt pin, or by change_mode(), which has to come in any case: woken
+  /// by the bus it only listens.
+  /// @return ok; full: asleep or configuration, and a frame is still to be sent: poll(), try again;
+  ///         no_chip; wrong_mode: not entered: begin() again.
   ROIO_NODISCARD Status change_mode(mcp2515::Mode mode);
+  /// Whether the chip sleeps: one register is read. No longer, once the bus has woken it.
+  bool is_asleep() {
+    return mcp2515::Control::mode_of(read_register(Register::canstat)) == mcp2515::Mode::asleep;
+  }
 
   /// Takes the chip off the bus, into configuration mode; what it held is gone as with begin().
   /// @return ok; no_chip: no answer.
@@ -296,8 +305,13 @@ class Mcp2515 {
   Mcp2515State state() const { return state_of(error_flags_); }
   /// As it is now: one register is read.
   Mcp2515State read_state() { return state_of(read_register(Register::eflg)); }
-  /// CANSTAT, as it is now.
-  uint8_t read_status() { return read_register(Register::canstat); }
+  /// READ STATUS, as it is now. The three TXnIF are always set in a chip that is at work.
+  uint8_t read_status();
+  /// Whether the pins RX0BF and RX1BF are driven, and low while their buffer is full; not driven
+  /// after begin().
+  void show_full_buffers(bool shows) {
+    write_register(Register::bfpctrl, shows ? mcp2515::pins_show_buffers : uint8_t{0});
+  }
   const Counters& counters() const { return counters_; }
   Port& port() { return port_; }
   Traits& traits() { return traits_; }
@@ -313,6 +327,7 @@ class Mcp2515 {
         : Transaction(port, static_cast<uint8_t>(instruction)) {
       this->put(static_cast<uint8_t>(address));
     }
+    ROIO_MCP2515_IN_LINE ~RegisterAccess() {}
   };
 
   using Waiting = mcp2515::Waiting<Traits::reports_outcomes>;
@@ -344,6 +359,12 @@ class Mcp2515 {
   uint8_t read_quick_status();
   void write_setup(const Mcp2515Config& config);
   bool setup_is(const Mcp2515Config& config);
+
+  // changing modes
+  bool await(mcp2515::Mode mode);
+  void prepare_sleep();
+  bool sleeps_or_slept();
+  bool end_sleep();
 
   // starting
   bool reach(uint8_t control);
@@ -411,6 +432,7 @@ class Mcp2515 {
   template <typename Port, uint8_t RxQueue, uint8_t TxQueue, typename Traits> \
   Type Mcp2515<Port, RxQueue, TxQueue, Traits>
 
+#include <roio/mcp2515_mode.hpp>
 #include <roio/mcp2515_receive.hpp>
 #include <roio/mcp2515_send.hpp>
 #include <roio/mcp2515_start.hpp>

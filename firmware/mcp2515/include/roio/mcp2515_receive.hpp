@@ -73,16 +73,17 @@ ROIO_MCP2515_MEMBER(bool)::read_rx_buffer(bool first, Mcp2515Frame& frame) {
   } else {
     quick_ = 0;
   }
+  if (!running_) {
+    count(counters_.discarded);
+    return false;
+  }
   rx1_is_older_ = 0;
   if (quick_ != 0) {
     rx1_is_older_ = first ? quick_ & QuickStatus::rx1 : 0;
     // Perhaps both were full for a while, and a third frame was lost: to be looked at soon.
     check_soon();
   }
-  if (!running_) {
-    count(counters_.discarded);
-  }
-  return running_;
+  return true;
 }
 
 ROIO_MCP2515_MEMBER(Status)::receive(Frame& frame) {

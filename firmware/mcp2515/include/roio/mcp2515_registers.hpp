@@ -24,6 +24,7 @@ enum class Instruction : uint8_t {
 
 /// Registers (table 11-1).
 enum class Register : uint8_t {
+  bfpctrl = 0x0C,
   canstat = 0x0E,
   canctrl = 0x0F,
   tec = 0x1C,
@@ -63,7 +64,9 @@ struct QuickStatus {
   static constexpr uint8_t rx1 = 0x02;
   static constexpr uint8_t any_rx = rx0 | rx1;
   static constexpr uint8_t everything = 0xFF;
-  static constexpr uint8_t txif = 0x08 | 0x20 | 0x80;
+  static constexpr uint8_t tx0if = 0x08;
+  static constexpr uint8_t txif = tx0if | 0x20 | 0x80;
+  static constexpr uint8_t any_txreq = 0x04 | 0x10 | 0x40;
   /// @param buffer by its bit in RTS: 4, 10h, 40h for 1, 2, 4.
   static constexpr uint8_t txreq(uint8_t buffer) {
     return static_cast<uint8_t>(4U * buffer * buffer);
@@ -76,6 +79,7 @@ struct Interrupt {
   static constexpr uint8_t rx1 = 0x02;
   static constexpr uint8_t tx_any = 0x1C;
   static constexpr uint8_t error = 0x20;
+  static constexpr uint8_t wake_up = 0x40;
   static constexpr uint8_t message_error = 0x80;
 };
 
@@ -109,10 +113,19 @@ struct RxControl {
 
 enum class Mode : uint8_t {
   normal = 0x00,
+  asleep = 0x20,
   loopback = 0x40,
   listen_only = 0x60,
   configuration = 0x80,
 };
+
+/// Off the bus, with everything that the chip was told: until another mode.
+constexpr bool is_rest(Mode mode) {
+  return mode == Mode::asleep || mode == Mode::configuration;
+}
+
+/// BFPCTRL (register 4-3): RX0BF and RX1BF are driven, low while their buffer is full.
+constexpr uint8_t pins_show_buffers = 0x0F;
 
 /// CANCTRL (register 10-1) and the mode field that CANSTAT shares with it.
 struct Control {
@@ -127,10 +140,14 @@ struct Control {
     return static_cast<uint8_t>(static_cast<uint8_t>(mode) | clock_out |
                                 (one_shot_too ? one_shot : uint8_t{0}));
   }
+  /// Of CANCTRL and CANSTAT.
+  static constexpr Mode mode_of(uint8_t control) { return static_cast<Mode>(control & mode_mask); }
 };
 /// CNF1..3 (registers 5-1 to 5-3).
 ///   CNF1 = SJW-1 in 7..6, BRP in 5..0 | CNF2 = BTLMODE, SAM, PS1-1 in 5..3, PropSeg-1 in 2..0 |
-///   CNF3 = PS2-1 in 2..0
+///   CNF3 = WAKFIL, PS2-1 in 2..0
+/// WAKFIL matters in sleep alone: pulses on the bus that are too short for a bit do not wake the
+/// chip.
 struct Cnf {
   static constexpr uint8_t cnf1(const BitTiming& t) {
     return static_cast<uint8_t>(((t.sjw - 1U) << 6) | (t.prescaler - 1U));
@@ -140,7 +157,7 @@ struct Cnf {
                                 ((t.phase_seg1 - 1U) << 3) | (t.prop_seg - 1U));
   }
   static constexpr uint8_t cnf3(const BitTiming& t) {
-    return static_cast<uint8_t>(t.phase_seg2 - 1U);
+    return static_cast<uint8_t>(0x40U | (t.phase_seg2 - 1U));
   }
   /// @param cnf CNF3, CNF2, CNF1.
   static uint16_t clocks_per_bit(const uint8_t* cnf) {

@@ -1,4 +1,4 @@
-/// Mcp2515, starting: begin(), what else resets the chip or changes its mode, and check_clock().
+/// Mcp2515, starting: begin(), what else resets the chip, and check_clock().
 /// Included by mcp2515.hpp.
 #ifndef ROIO_MCP2515_START_HPP
 #define ROIO_MCP2515_START_HPP
@@ -105,8 +105,7 @@ ROIO_MCP2515_MEMBER(Status)::begin(const Mcp2515Config& config) {
   if (!config.timing_is_valid()) {
     return Status::bad_timing;
   }
-  const uint8_t mode = config.control() & Control::mode_mask;
-  if (mode == static_cast<uint8_t>(mcp2515::Mode::configuration) ||
+  if (mcp2515::is_rest(Control::mode_of(config.control())) ||
       (!Traits::reports_outcomes && (config.control() & Control::one_shot) != 0)) {
     return Status::bad_argument;
   }
@@ -132,26 +131,9 @@ ROIO_MCP2515_MEMBER(Status)::start(const Mcp2515Config& config) {
   return Status::ok;
 }
 
-ROIO_MCP2515_MEMBER(Status)::change_mode(mcp2515::Mode mode) {
-  using mcp2515::Control;
-  if (mode == mcp2515::Mode::configuration) {
-    return Status::bad_argument;
-  }
-  if (!running_) {
-    return Status::no_chip;
-  }
-  const uint8_t control =
-      static_cast<uint8_t>((control_ & ~Control::mode_mask) | static_cast<uint8_t>(mode));
-  if (!reach(control)) {
-    stop();
-    return Status::wrong_mode;
-  }
-  control_ = control;
-  return Status::ok;
-}
-
 ROIO_MCP2515_MEMBER(Status)::stop() {
   count_what_is_forgotten();
+  control_ = 0;  // no mode that change_mode() could come back from
   return reset_chip() ? Status::ok : Status::no_chip;
 }
 
@@ -221,8 +203,6 @@ ROIO_MCP2515_MEMBER(void)::load_clock_frames() {
 /// Sends them, and waits until all are gone.
 /// @return how long that took, or some time from limit_us on.
 ROIO_MCP2515_MEMBER(uint32_t)::time_clock_frames(uint32_t limit_us) {
-  constexpr uint8_t requested =
-      QuickStatus::txreq(1) | QuickStatus::txreq(2) | QuickStatus::txreq(4);
   {
     const Transaction transaction(port_, mcp2515::request_to_send(mcp2515::all_buffers));
   }
@@ -232,7 +212,8 @@ ROIO_MCP2515_MEMBER(uint32_t)::time_clock_frames(uint32_t limit_us) {
   uint32_t looks = limit_us / 2U;
   do {
     elapsed_us = port_.microseconds() - start;
-  } while ((read_quick_status() & requested) != 0 && elapsed_us < limit_us && --looks != 0);
+  } while ((read_quick_status() & QuickStatus::any_txreq) != 0 && elapsed_us < limit_us &&
+           --looks != 0);
   return elapsed_us;
 }
 

@@ -54,6 +54,12 @@ ROIO_MCP2515_MEMBER(bool)::is_plausible(uint8_t quick) {
   return (quick & static_cast<uint8_t>(~(QuickStatus::any_rx | pending_))) == QuickStatus::txif;
 }
 
+ROIO_MCP2515_MEMBER(uint8_t)::read_status() {
+  const uint8_t quick = read_quick_status();
+  note(quick, 2);
+  return quick;
+}
+
 /// Reads READ STATUS and takes in what it shows.
 ROIO_MCP2515_MEMBER(void)::look() {
   note(read_quick_status(), 2);

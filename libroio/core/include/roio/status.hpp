@@ -30,26 +30,37 @@ enum class Status : uint8_t {
   wrong_clock,    ///< The controller's oscillator is not the one that the bit timing is for.
 };
 
+/// The texts of to_string(), one behind the other, each with a NUL at its end: where flash is not
+/// read like RAM, they are put there from this.
+#define ROIO_STATUS_TEXTS                                                                \
+  "ok\0bad argument\0full\0not a Roio frame\0unknown class\0nothing received\0"          \
+  "no controller answers\0controller not in the mode asked for\0impossible bit timing\0" \
+  "controller runs at another clock\0unknown status"
+
 namespace detail {
-constexpr const char* status_texts[] = {"ok",
-                                        "bad argument",
-                                        "full",
-                                        "not a Roio frame",
-                                        "unknown class",
-                                        "nothing received",
-                                        "no controller answers",
-                                        "controller not in the mode asked for",
-                                        "impossible bit timing",
-                                        "controller runs at another clock"};
-static_assert(sizeof status_texts / sizeof status_texts[0] ==
-                  static_cast<uint8_t>(Status::wrong_clock) + 1U,
-              "one text for each status");
+constexpr char status_texts[] = ROIO_STATUS_TEXTS;
+constexpr const char* behind(const char* text) {
+  return *text == '\0' ? text + 1 : behind(text + 1);
+}
+constexpr const char* nth_text(const char* first, uint8_t n) {
+  return n == 0 ? first : nth_text(behind(first), static_cast<uint8_t>(n - 1U));
+}
+static_assert(nth_text(status_texts, static_cast<uint8_t>(Status::wrong_clock) + 1U) -
+                      status_texts + sizeof "unknown status" ==
+                  sizeof status_texts,
+              "one text for each status, and one for what is none");
 }  // namespace detail
+
+/// Which of ROIO_STATUS_TEXTS.
+constexpr uint8_t text_number(Status status) {
+  return static_cast<uint8_t>(status <= Status::wrong_clock
+                                  ? static_cast<uint8_t>(status)
+                                  : static_cast<uint8_t>(Status::wrong_clock) + 1U);
+}
 
 /// A short lower-case phrase, for logs and messages; never null.
 constexpr const char* to_string(Status status) {
-  return status <= Status::wrong_clock ? detail::status_texts[static_cast<uint8_t>(status)]
-                                       : "unknown status";
+  return detail::nth_text(detail::status_texts, text_number(status));
 }
 
 }  // namespace roio

@@ -47,8 +47,10 @@ void loop() {
     roio.broadcast(1, 10);
     roio.broadcast(text, sizeof(text), 0);
   }
-  if (roio.status() != 0) {
-    Serial.println(roio.status());
+  if ((roio.status() & 0x04) != 0) {
+    delay(1);  // the last one is still to be sent
+  }
+  if (Serial.read() == 'r') {
     roio.reset();
     roio.begin(500, 2, 0);
   }

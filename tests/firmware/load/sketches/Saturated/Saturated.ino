@@ -5,7 +5,7 @@
 // counts that.
 //
 // Pin 3 low: work is counted, from 0 on. Pin 4 low: prints, once,
-//   received disordered wrong work / driver's received, foreign, overflows, chip losses
+//   received disordered wrong work / driver's received, foreign, overflows, chip losses, line losses
 #include <Roio.h>
 
 #ifndef NODE
@@ -57,7 +57,8 @@ void print() {
                               roio.counters().received,
                               roio.counters().foreign,
                               roio.counters().overflows,
-                              roio.counters().chip_losses};
+                              roio.counters().chip_losses,
+                              roio.counters().line_losses};
   Serial.begin(115200);
   for (const uint32_t one : numbers) {
     Serial.print(one);
