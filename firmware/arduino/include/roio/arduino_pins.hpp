@@ -8,6 +8,8 @@
 #include <Arduino.h>
 #include <SPI.h>
 
+#include <roio/arduino_spi.hpp>
+
 #define ROIO_OUT_OF_LINE
 #define ROIO_IN_LINE
 
@@ -49,27 +51,6 @@ class SetPin {
 inline void begin_spi() {
   SPI.begin();
 }
-inline void spi_start(uint8_t byte) {
-  SPI.transfer(byte);
-}
-inline void spi_put(uint8_t byte) {
-  SPI.transfer(byte);
-}
-inline void spi_send(const uint8_t* bytes, uint8_t count) {
-  while (count-- != 0) {
-    SPI.transfer(*bytes++);
-  }
-}
-inline uint8_t spi_get() {
-  return SPI.transfer(0);
-}
-inline void spi_receive(uint8_t* bytes, uint8_t count) {
-  while (count-- != 0) {
-    *bytes++ = SPI.transfer(0);
-  }
-}
-inline void spi_finish() {}
-
 /// Interrupts are off while one lives, and on again after it if they were on before, where the core
 /// can tell.
 class InterruptsOff {

@@ -7,7 +7,13 @@
 #include <SPI.h>
 
 #include <roio/arduino_pin_map_avr.hpp>
+
+// The SPI library sets half the clock for the 10 MHz of arduino_port.hpp up to here.
+#if F_CPU <= 20000000
 #include <roio/arduino_spi_avr.hpp>
+#else
+#include <roio/arduino_spi.hpp>
+#endif
 
 /// The linker's optimiser would copy these into every caller otherwise.
 #define ROIO_OUT_OF_LINE __attribute__((noinline))

@@ -117,7 +117,7 @@ class ArduinoPort {
   };
 
  private:
-  // Out of line: they are called from everywhere, and spi_start() wants it.
+  // Out of line: they are called from everywhere, and spi_start() of an AVR wants it.
   ROIO_OUT_OF_LINE void select(uint8_t first) {
     SPI.beginTransaction(SPISettings(spi_hz, MSBFIRST, SPI_MODE0));
     chip_select_.set_low();

@@ -1,7 +1,8 @@
-/// The SPI of an AVR, as fast as it goes. Up to 20 MHz a byte has half the processor's clock, and it
-/// is known to the cycle when it is over: so cycles are counted, 18 from byte to byte, where asking
-/// for SPIF takes 21 and more. (Read 17 cycles after the write at the earliest, written again after
-/// 18: docs/internals/simulator.md, "Boards".) An interrupt makes it longer, which does no harm.
+/// The SPI of an AVR of 20 MHz at most, as fast as it goes: then SPI has half the processor's
+/// clock, and it is known to the cycle when a byte is over. So cycles are counted, 18 from byte to
+/// byte, where asking for SPIF takes 21 and more. (Read 17 cycles after the write at the earliest,
+/// written again after 18: docs/internals/simulator.md, "Boards".) An interrupt makes it longer,
+/// which does no harm.
 ///
 /// spi_start() and spi_put() return while their byte is under way; then comes any of these, or
 /// spi_finish(). With spi_get() and spi_receive() nothing is under way any more. SPIF is cleared by
@@ -10,14 +11,11 @@
 #define ROIO_ARDUINO_SPI_AVR_HPP
 
 #include <Arduino.h>
-#include <SPI.h>
 
 namespace roio {
 
-#if F_CPU <= 20000000
-
-/// What the functions below call, in one piece because they share it. Each entry may come as soon as
-/// 8 cycles after the write to SPDR of the byte that is under way: RET takes 4 and RCALL 3.
+/// What the functions below call, in one piece because they share it. Each entry may come as soon
+/// as 8 cycles after the write to SPDR of the byte that is under way: RET takes 4 and RCALL 3.
 __attribute__((naked, noinline)) inline void spi_by_counting() {
   __asm__ volatile(
       // r24: the byte.
@@ -30,8 +28,8 @@ __attribute__((naked, noinline)) inline void spi_by_counting() {
       ".weak roio_spi_send\n"
       "roio_spi_send:\n"
       "1: ld __tmp_reg__, X+\n"
-      "2: rcall 9f\n"     // 7 cycles
-      "  rjmp .+0\n"      // 2
+      "2: rcall 9f\n"  // 7 cycles
+      "  rjmp .+0\n"   // 2
       "  rjmp .+0\n"
       "  nop\n"
       "  out %[spdr], __tmp_reg__\n"
@@ -99,10 +97,7 @@ inline __attribute__((always_inline)) void spi_send(const uint8_t* bytes, uint8_
 
 inline __attribute__((always_inline)) uint8_t spi_get() {
   register uint8_t value __asm__("r24");
-  __asm__ volatile("%~call roio_spi_get"
-                   : "=r"(value)
-                   : "i"(spi_by_counting)
-                   : "r0", "r26", "r27");
+  __asm__ volatile("%~call roio_spi_get" : "=r"(value) : "i"(spi_by_counting) : "r0", "r26", "r27");
   return value;
 }
 
@@ -119,33 +114,7 @@ inline __attribute__((always_inline)) void spi_finish() {
   __asm__ volatile("%~call roio_spi_finish" : : "i"(spi_by_counting) : "r0");
 }
 
-#else
-
-// SPI has less than half the clock. SPI.transfer() of a buffer takes 60 bytes of flash and overwrites
-// what it sends.
-
-inline __attribute__((noinline)) void spi_finish() {
-  while ((SPSR & (1U << SPIF)) == 0) {
-  }
-  (void)SPDR;
-}
-
-inline __attribute__((noinline)) void spi_put(uint8_t byte) {
-  spi_finish();
-  SPDR = byte;
-}
-
-inline __attribute__((noinline)) uint8_t spi_get() {
-  spi_put(0);
-  while ((SPSR & (1U << SPIF)) == 0) {
-  }
-  return SPDR;
-}
-#error not yet
-
-#endif
-
-/// Begins with a byte. Its caller has to be a function of its own, because of the 8 cycles.
+/// The first byte. Who calls this is a function of its own, because of the 8 cycles.
 inline __attribute__((always_inline)) void spi_start(uint8_t byte) {
   SPDR = byte;
 }

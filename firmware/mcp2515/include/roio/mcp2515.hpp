@@ -255,9 +255,9 @@ class Mcp2515 {
   /// Enters another mode. normal, listen_only and loopback: as soon as the bus is idle for 11 bits;
   /// waits for it as begin() does. In listen_only the chip's filters do not hold (10.3).
   /// asleep and configuration: the chip leaves the bus and keeps its setup; running() is false, and
-  /// the calls above say no_chip, until change_mode() takes it up again, or begin() starts it anew. Asleep it is woken by the next frame on the bus, which is
-  /// lost, and pulls its interrupt pin, or by change_mode(), which has to come in any case: woken
-  /// by the bus it only listens.
+  /// the calls above say no_chip, until change_mode() takes it up again, or begin() starts it anew.
+  /// Asleep it is woken by the next frame on the bus, which is lost, and pulls its interrupt pin,
+  /// or by change_mode(), which has to come in any case: woken by the bus it only listens.
   /// @return ok; full: asleep or configuration, and a frame is still to be sent: poll(), try again;
   ///         no_chip; wrong_mode: not entered: begin() again.
   ROIO_NODISCARD Status change_mode(mcp2515::Mode mode);

@@ -203,9 +203,7 @@ ROIO_MCP2515_MEMBER(void)::load_clock_frames() {
 /// Sends them, and waits until all are gone.
 /// @return how long that took, or some time from limit_us on.
 ROIO_MCP2515_MEMBER(uint32_t)::time_clock_frames(uint32_t limit_us) {
-  {
-    const Transaction transaction(port_, mcp2515::request_to_send(mcp2515::all_buffers));
-  }
+  { const Transaction transaction(port_, mcp2515::request_to_send(mcp2515::all_buffers)); }
   const uint32_t start = port_.microseconds();
   uint32_t elapsed_us = 0;
   // A clock that stands still (interrupts are off) must not keep anybody here: a look takes 2 us.
