@@ -19,7 +19,7 @@ struct Port {
     }
     ~Transaction() { release(); }
     void put(uint8_t byte) { exchange(byte); }
-    uint8_t get() { return exchange(0); }
+    uint8_t exchange(uint8_t byte);
     void send(const uint8_t* bytes, uint8_t count);
     void receive(uint8_t* bytes, uint8_t count);
     void release() { select(false); }
@@ -30,7 +30,6 @@ struct Port {
     }
 
    private:
-    static uint8_t exchange(uint8_t out);
     static void select(bool selected);
   };
 

@@ -230,7 +230,7 @@ TEST(SpiWire, ThePortIsTheDriversViewOfIt) {
     EXPECT_FALSE(rig.wire.selected());
     transaction.restart(0x03);
     transaction.put(0x2B);
-    EXPECT_EQ(transaction.get(), 0x1F);
+    EXPECT_EQ(transaction.exchange(0x00), 0x1F);
   }
   EXPECT_FALSE(rig.wire.selected());
   EXPECT_FALSE(port.interrupt_line_is_low());

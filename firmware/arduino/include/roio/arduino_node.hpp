@@ -6,6 +6,11 @@
 #include <roio/arduino_port.hpp>
 #include <roio/mcp2515.hpp>
 
+#if defined(__AVR__) && defined(__OPTIMIZE__)
+#define ROIO_AVR_SETUP
+#include <roio/arduino_setup_avr.hpp>
+#endif
+
 namespace roio {
 
 /// What a node has besides the least. Derive from it, change what differs, and give it to
@@ -240,6 +245,12 @@ class ArduinoNode {
     const Mcp2515Config config(cnf, mask, mcp2515_filters_of(own).filter[0],
                                mcp2515_filters_of(own).filter[1],
                                mcp2515::Control::of(mode, false));
+#if defined(ROIO_AVR_SETUP)
+    if (__builtin_constant_p(cnf) && __builtin_constant_p(own.subnet) &&
+        __builtin_constant_p(own.node)) {
+      return driver_.start(FlashSetup(config));
+    }
+#endif
     return driver_.start(config);
   }
   /// And the pins.

@@ -85,9 +85,9 @@ class ArduinoPort {
       spi_send(bytes, count);
       is_sending_ = true;
     }
-    ROIO_IN_LINE uint8_t get() {
+    ROIO_IN_LINE uint8_t exchange(uint8_t byte) {
       is_sending_ = false;
-      return spi_get();
+      return spi_exchange(byte);
     }
     ROIO_IN_LINE void receive(uint8_t* bytes, uint8_t count) {
       spi_receive(bytes, count);

@@ -19,8 +19,8 @@ inline void spi_send(const uint8_t* bytes, uint8_t count) {
     SPI.transfer(*bytes++);
   }
 }
-inline uint8_t spi_get() {
-  return SPI.transfer(0);
+inline uint8_t spi_exchange(uint8_t byte) {
+  return SPI.transfer(byte);
 }
 inline void spi_receive(uint8_t* bytes, uint8_t count) {
   while (count-- != 0) {

@@ -5,8 +5,8 @@
 /// which does no harm.
 ///
 /// spi_start() and spi_put() return while their byte is under way; then comes any of these, or
-/// spi_finish(). With spi_get() and spi_receive() nothing is under way any more. SPIF is cleared by
-/// then: who shares SPI waits for it.
+/// spi_finish(). With spi_exchange() and spi_receive() nothing is under way any more. SPIF is
+/// cleared by then: who shares SPI waits for it.
 #ifndef ROIO_ARDUINO_SPI_AVR_HPP
 #define ROIO_ARDUINO_SPI_AVR_HPP
 
@@ -36,12 +36,6 @@ __attribute__((naked, noinline)) inline void spi_by_counting() {
       "  dec r24\n"
       "  brne 1b\n"
       "9: ret\n"
-      // Returns in r24, and stores where no harm is done: at address 0 is r0.
-      ".weak roio_spi_get\n"
-      "roio_spi_get:\n"
-      "  ldi r24, 1\n"
-      "  ldi r26, 0\n"
-      "  ldi r27, 0\n"
       // X: to where. r24: how many; then the last one.
       ".weak roio_spi_receive\n"
       "roio_spi_receive:\n"
@@ -67,13 +61,21 @@ __attribute__((naked, noinline)) inline void spi_by_counting() {
       "  in r24, %[spdr]\n"
       "  st X, r24\n"
       "  ret\n"
+      // r24: the byte; then the answer.
+      ".weak roio_spi_exchange\n"
+      "roio_spi_exchange:\n"
+      "  rcall 9b\n"
+      "  rjmp .+0\n"
+      "  nop\n"
+      "  out %[spdr], r24\n"
+      "  rcall 9b\n"
       ".weak roio_spi_finish\n"
       "roio_spi_finish:\n"
       "  rcall 9b\n"
       "  rjmp .+0\n"
       "  nop\n"
       "  in __tmp_reg__, %[spsr]\n"
-      "  in __tmp_reg__, %[spdr]\n"
+      "  in r24, %[spdr]\n"
       "  ret\n"
       :
       : [spdr] "I"(_SFR_IO_ADDR(SPDR)), [spsr] "I"(_SFR_IO_ADDR(SPSR)));
@@ -95,9 +97,10 @@ inline __attribute__((always_inline)) void spi_send(const uint8_t* bytes, uint8_
                    : "r0", "memory");
 }
 
-inline __attribute__((always_inline)) uint8_t spi_get() {
-  register uint8_t value __asm__("r24");
-  __asm__ volatile("%~call roio_spi_get" : "=r"(value) : "i"(spi_by_counting) : "r0", "r26", "r27");
+/// @return what came in meanwhile.
+inline __attribute__((always_inline)) uint8_t spi_exchange(uint8_t byte) {
+  register uint8_t value __asm__("r24") = byte;
+  __asm__ volatile("%~call roio_spi_exchange" : "+r"(value) : "i"(spi_by_counting) : "r0");
   return value;
 }
 
@@ -111,7 +114,7 @@ inline __attribute__((always_inline)) void spi_receive(uint8_t* bytes, uint8_t c
 }
 
 inline __attribute__((always_inline)) void spi_finish() {
-  __asm__ volatile("%~call roio_spi_finish" : : "i"(spi_by_counting) : "r0");
+  __asm__ volatile("%~call roio_spi_finish" : : "i"(spi_by_counting) : "r0", "r24");
 }
 
 /// The first byte. Who calls this is a function of its own, because of the 8 cycles.

@@ -69,7 +69,7 @@ namespace roio {
 //       Transaction(PortExample&, uint8_t first);        // the first byte to be sent
 //       void put(uint8_t byte);                          // sends one
 //       void send(const uint8_t* bytes, uint8_t count);  // 1 or more
-//       uint8_t get();                                   // receives one, and sends 0
+//       uint8_t exchange(uint8_t byte);                  // the same, and receives one
 //       void receive(uint8_t* bytes, uint8_t count);     // 1 or more
 //       void release();                // chip select high, early
 //       void restart(uint8_t first);   // high, if it is not yet; then low again, and a first byte
@@ -225,7 +225,9 @@ class Mcp2515 {
   ROIO_NODISCARD Status begin(const Mcp2515Config& config);
   /// The same, of a configuration that is known to be right: does not look for bad_timing and
   /// bad_argument.
-  ROIO_NODISCARD Status start(const Mcp2515Config& config);
+  /// @tparam Setup Mcp2515Config, or what has its operator[] and control().
+  template <typename Setup>
+  ROIO_NODISCARD Status start(const Setup& setup);
 
   /// Fetches what has come in (with RxQueue 0 that is receive()'s alone), hands over what waits,
   /// looks after errors. Bounded: at most RxQueue + 2 frames and a handful of registers.
@@ -357,8 +359,8 @@ class Mcp2515 {
   void write_register(Register address, uint8_t value);
   void modify_register(Register address, uint8_t mask, uint8_t value);
   uint8_t read_quick_status();
-  void write_setup(const Mcp2515Config& config);
-  bool setup_is(const Mcp2515Config& config);
+  template <typename Setup>
+  bool exchange_setup(const Setup& setup);
 
   // changing modes
   bool await(mcp2515::Mode mode);
@@ -368,7 +370,8 @@ class Mcp2515 {
 
   // starting
   bool reach(uint8_t control);
-  bool configure(const Mcp2515Config& config);
+  template <typename Setup>
+  bool configure(const Setup& setup);
   bool reset_chip();
   void count_what_is_forgotten();
   void load_clock_frames();
@@ -430,6 +433,11 @@ class Mcp2515 {
 /// A member function of the driver, without its template arguments each time.
 #define ROIO_MCP2515_MEMBER(Type)                                             \
   template <typename Port, uint8_t RxQueue, uint8_t TxQueue, typename Traits> \
+  Type Mcp2515<Port, RxQueue, TxQueue, Traits>
+/// And one that has one of its own.
+#define ROIO_MCP2515_MEMBER_OF(Argument, Type)                                \
+  template <typename Port, uint8_t RxQueue, uint8_t TxQueue, typename Traits> \
+  template <typename Argument>                                                \
   Type Mcp2515<Port, RxQueue, TxQueue, Traits>
 
 #include <roio/mcp2515_mode.hpp>

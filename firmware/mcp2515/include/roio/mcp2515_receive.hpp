@@ -61,7 +61,7 @@ ROIO_MCP2515_MEMBER(bool)::read_rx_buffer(bool first, Mcp2515Frame& frame) {
     looks = !called || is_called();
     if (looks) {
       transaction.restart(static_cast<uint8_t>(Instruction::read_status));
-      quick = transaction.get();
+      quick = transaction.exchange(0);
     }
   }
   if (looks) {

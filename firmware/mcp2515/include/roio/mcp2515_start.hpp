@@ -47,30 +47,31 @@ ROIO_MCP2515_MEMBER(bool)::reach(uint8_t control) {
   return false;
 }
 
-/// Writes filters, masks and timing.
-ROIO_MCP2515_MEMBER(void)::write_setup(const Mcp2515Config& config) {
-  for (uint8_t address = 0; address != mcp2515::setup_end; address += mcp2515::setup_gap) {
-    RegisterAccess access(port_, Instruction::write, static_cast<Register>(address));
+/// Writes filters, masks and timing, and reads them back.
+/// @return whether all are as they have to be.
+ROIO_MCP2515_MEMBER_OF(Setup, bool)::exchange_setup(const Setup& setup) {
+  Instruction instruction = Instruction::write;
+  for (;;) {
+    uint8_t differences = 0;  // what a chip that is written to answers is nothing
+    uint8_t address = 0;
     do {
-      access.put(config[address]);
-    } while (++address % 16U != mcp2515::setup_block);
+      RegisterAccess access(port_, instruction, static_cast<Register>(address));
+      do {
+        const uint8_t byte = setup[address];
+        differences |= static_cast<uint8_t>(access.exchange(byte) ^ byte);
+        ++address;
+      } while ((address & 0x0FU) != mcp2515::setup_block);
+      address = static_cast<uint8_t>(address + mcp2515::setup_gap);
+    } while (address != mcp2515::setup_end);
+    if (instruction == Instruction::read) {
+      return differences == 0;
+    }
+    instruction = Instruction::read;
   }
-}
-
-/// Reads them back.
-ROIO_MCP2515_MEMBER(bool)::setup_is(const Mcp2515Config& config) {
-  uint8_t differences = 0;
-  for (uint8_t address = 0; address != mcp2515::setup_end; address += mcp2515::setup_gap) {
-    RegisterAccess access(port_, Instruction::read, static_cast<Register>(address));
-    do {
-      differences |= static_cast<uint8_t>(access.get() ^ config[address]);
-    } while (++address % 16U != mcp2515::setup_block);
-  }
-  return differences == 0;
 }
 
 /// Writes what the registers have to be, and reads it back.
-ROIO_MCP2515_MEMBER(bool)::configure(const Mcp2515Config& config) {
+ROIO_MCP2515_MEMBER_OF(Setup, bool)::configure(const Setup& setup) {
   using mcp2515::Interrupt;
   using mcp2515::RxControl;
   constexpr uint8_t rx0 = RxControl::by_filters | RxControl::rollover;
@@ -81,8 +82,7 @@ ROIO_MCP2515_MEMBER(bool)::configure(const Mcp2515Config& config) {
     write_register(mcp2515::txbctrl(buffer), order().level_of(buffer));
     right = right && read_register(mcp2515::txbctrl(buffer)) == order().level_of(buffer);
   }
-  write_setup(config);
-  right = right && setup_is(config);
+  right = right && exchange_setup(setup);
   if (Port::has_interrupt_line) {
     constexpr uint8_t received = Interrupt::rx0 | Interrupt::rx1;
     write_register(Register::caninte, received);
@@ -112,13 +112,13 @@ ROIO_MCP2515_MEMBER(Status)::begin(const Mcp2515Config& config) {
   return start(config);
 }
 
-ROIO_MCP2515_MEMBER(Status)::start(const Mcp2515Config& config) {
+ROIO_MCP2515_MEMBER_OF(Setup, Status)::start(const Setup& setup) {
   count_what_is_forgotten();
-  if (!reset_chip() || !configure(config)) {
+  if (!reset_chip() || !configure(setup)) {
     return Status::no_chip;
   }
   try_line();
-  control_ = config.control();
+  control_ = setup.control();
   if (!reach(control_)) {
     // Not later either, when nobody expects it any more.
     write_register(Register::canctrl, mcp2515::Control::after_reset);

@@ -16,7 +16,7 @@ constexpr uint8_t calls_at_most = 192;  ///< Where there is always a frame to be
 
 ROIO_MCP2515_MEMBER(uint8_t)::read_register(Register address) {
   RegisterAccess access(port_, Instruction::read, address);
-  return access.get();
+  return access.exchange(0);
 }
 
 ROIO_MCP2515_MEMBER(void)::write_register(Register address, uint8_t value) {
@@ -32,7 +32,7 @@ ROIO_MCP2515_MEMBER(void)::modify_register(Register address, uint8_t mask, uint8
 
 ROIO_MCP2515_MEMBER(uint8_t)::read_quick_status() {
   Transaction transaction(port_, static_cast<uint8_t>(Instruction::read_status));
-  return transaction.get();
+  return transaction.exchange(0);
 }
 
 ROIO_MCP2515_MEMBER(void)::read_error_counters(uint8_t& transmit, uint8_t& receive) {

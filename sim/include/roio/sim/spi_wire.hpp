@@ -118,15 +118,15 @@ class ChipPort {
     Transaction& operator=(const Transaction&) = delete;
     ~Transaction() { release(); }
     void put(std::uint8_t byte) { wire_.exchange(byte); }
+    std::uint8_t exchange(std::uint8_t byte) { return wire_.exchange(byte); }
     void send(const std::uint8_t* bytes, std::uint8_t count) {
       for (; count > 0; --count) {
         put(*bytes++);
       }
     }
-    std::uint8_t get() { return wire_.exchange(0); }
     void receive(std::uint8_t* bytes, std::uint8_t count) {
       for (; count > 0; --count) {
-        *bytes++ = get();
+        *bytes++ = exchange(0);
       }
     }
     void release() { wire_.deselect(); }
