@@ -211,7 +211,7 @@ class CanSide {
       driver_.read_error_counters(transmit, receive);
     }
   }
-  const Driver::Counters& counters() const { return driver_.counters(); }
+  Driver::Counters counters() const { return driver_.counters(); }
   Slots& slots() { return driver_.traits().slots; }
   /// 0: no controller answers.
   uint32_t osc_hz() const { return osc_hz_; }

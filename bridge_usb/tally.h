@@ -1,4 +1,5 @@
-/// Tally: all that the bridge counts, in the order of COUNTERS in docs/internals/serial-protocol.md.
+/// Tally: all that the bridge counts, in the order of COUNTERS in
+/// docs/internals/serial-protocol.md.
 #ifndef ROIO_BRIDGE_TALLY_H
 #define ROIO_BRIDGE_TALLY_H
 
@@ -14,7 +15,7 @@ class Tally {
 
   /// @param index 0..counter_count - 1.
   uint32_t value(uint8_t index) {
-    const auto& driver = can_.counters();
+    const auto driver = can_.counters();
     switch (index) {
       case 0:
         return dropped;

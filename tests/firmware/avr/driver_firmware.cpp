@@ -24,7 +24,6 @@ struct Port {
     void receive(uint8_t* bytes, uint8_t count);
     void release() { select(false); }
     void restart(uint8_t first) {
-      release();
       select(true);
       put(first);
     }

@@ -161,7 +161,7 @@ class ArduinoNode {
 
   /// Whether the chip is at work; if not, begin() again.
   bool running() const { return driver_.running(); }
-  const Counters& counters() const { return driver_.counters(); }
+  ROIO_IN_LINE Counters counters() const { return driver_.counters(); }
   /// How many messages are in the receive queue.
   uint8_t fetched() const { return driver_.fetched(); }
   /// How many messages wait in the send queue, and in the chip.

@@ -90,7 +90,11 @@ class ArduinoPort {
       return spi_exchange(byte);
     }
     ROIO_IN_LINE void receive(uint8_t* bytes, uint8_t count) {
-      spi_receive(bytes, count);
+      if (is_sending_) {
+        spi_receive(bytes, count);
+      } else {
+        spi_receive_more(bytes, count);
+      }
       is_sending_ = false;
     }
     ROIO_IN_LINE void release() {
@@ -101,7 +105,6 @@ class ArduinoPort {
       port_.chip_select_.set_high();
     }
     ROIO_IN_LINE void restart(uint8_t first) {
-      release();
       port_.start(first);
       is_sending_ = true;
     }

@@ -27,6 +27,9 @@ inline void spi_receive(uint8_t* bytes, uint8_t count) {
     *bytes++ = SPI.transfer(0);
   }
 }
+inline void spi_receive_more(uint8_t* bytes, uint8_t count) {
+  spi_receive(bytes, count);
+}
 inline void spi_finish() {}
 
 }  // namespace roio

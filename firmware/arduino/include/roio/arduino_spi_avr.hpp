@@ -42,6 +42,9 @@ __attribute__((naked, noinline)) inline void spi_by_counting() {
       "  rcall 9b\n"
       "  rjmp .+0\n"
       "  nop\n"
+      // The same, with nothing under way.
+      ".weak roio_spi_receive_more\n"
+      "roio_spi_receive_more:\n"
       "  out %[spdr], __zero_reg__\n"
       "  rjmp .+0\n"
       "  rjmp .+0\n"
@@ -108,6 +111,16 @@ inline __attribute__((always_inline)) uint8_t spi_exchange(uint8_t byte) {
 inline __attribute__((always_inline)) void spi_receive(uint8_t* bytes, uint8_t count) {
   register uint8_t left __asm__("r24") = count;
   __asm__ volatile("%~call roio_spi_receive"
+                   : "+x"(bytes), "+r"(left)
+                   : "i"(spi_by_counting)
+                   : "r0", "memory");
+}
+
+/// With nothing under way.
+/// @param count 1 or more.
+inline __attribute__((always_inline)) void spi_receive_more(uint8_t* bytes, uint8_t count) {
+  register uint8_t left __asm__("r24") = count;
+  __asm__ volatile("%~call roio_spi_receive_more"
                    : "+x"(bytes), "+r"(left)
                    : "i"(spi_by_counting)
                    : "r0", "memory");

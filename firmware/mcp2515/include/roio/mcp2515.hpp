@@ -72,7 +72,7 @@ namespace roio {
 //       uint8_t exchange(uint8_t byte);                  // the same, and receives one
 //       void receive(uint8_t* bytes, uint8_t count);     // 1 or more
 //       void release();                // chip select high, early
-//       void restart(uint8_t first);   // high, if it is not yet; then low again, and a first byte
+//       void restart(uint8_t first);   // after that: low again, and a first byte
 //       ~Transaction();
 //     };
 //     class Uninterrupted {     // while one lives, nothing else runs: interrupts are off
@@ -196,19 +196,12 @@ class Mcp2515 {
 
   template <typename... Arguments>
   explicit constexpr Mcp2515(Arguments&&... arguments)
-      : port_(static_cast<Arguments&&>(arguments)...),
-        traits_(),
+      : parts_(static_cast<Arguments&&>(arguments)...),
         counters_(),
-        quick_(0),
+        status_(0),
         error_flags_(0),
         control_(0),
-        calls_(0),
-        running_(false),
-        rx1_is_older_(0),
-        pending_(0),
-        requests_(),
-        rx_queue_(),
-        tx_queue_() {}
+        calls_(0) {}
 
   Mcp2515(const Mcp2515&) = delete;
   Mcp2515& operator=(const Mcp2515&) = delete;
@@ -279,12 +272,13 @@ class Mcp2515 {
 
   /// How many frames are in the chip to be sent, as far as was last seen.
   uint8_t in_flight() const {
-    return static_cast<uint8_t>(((pending_ >> 2) & 1U) + ((pending_ >> 4) & 1U) + (pending_ >> 6));
+    return static_cast<uint8_t>(((status_ >> 2) & 1U) + ((status_ >> 4) & 1U) +
+                                ((status_ >> 6) & 1U));
   }
   /// How many received frames receive() has without looking at the chip.
-  uint8_t fetched() const { return rx_queue_.size(); }
+  uint8_t fetched() const { return rx_queue().size(); }
   /// How many wait for the chip.
-  uint8_t waiting() const { return tx_queue_.size(); }
+  uint8_t waiting() const { return tx_queue().size(); }
 
   /// Reads the chip's error counters.
   void read_error_counters(uint8_t& transmit, uint8_t& receive);
@@ -300,9 +294,9 @@ class Mcp2515 {
   ROIO_NODISCARD Status check_clock(const Mcp2515Config& config, uint32_t osc_hz,
                                     uint32_t& measured_hz);
 
-  bool running() const { return running_; }
+  bool running() const { return (status_ & QuickStatus::tx0if) != 0; }
   /// Whether the interrupt line is there and, as far as is known, works; if not, the driver polls.
-  bool line_is_on() const { return requests_.is_on(); }
+  bool line_is_on() const { return parts_.is_on(); }
   /// As last seen; active for ever without Traits::diagnoses.
   Mcp2515State state() const { return state_of(error_flags_); }
   /// As it is now: one register is read.
@@ -314,9 +308,17 @@ class Mcp2515 {
   void show_full_buffers(bool shows) {
     write_register(Register::bfpctrl, shows ? mcp2515::pins_show_buffers : uint8_t{0});
   }
-  const Counters& counters() const { return counters_; }
-  Port& port() { return port_; }
-  Traits& traits() { return traits_; }
+  ROIO_MCP2515_IN_LINE Counters counters() const {
+    Counters counters = counters_;
+    if (!Traits::reports_outcomes) {
+      // Counted when the chip was given them; what has not ended otherwise has ended well.
+      counters.sent =
+          static_cast<typename Traits::Count>(counters.sent - counters.unknown - in_flight());
+    }
+    return counters;
+  }
+  Port& port() { return parts_; }
+  Traits& traits() { return parts_; }
 
  private:
   using Instruction = mcp2515::Instruction;
@@ -338,10 +340,22 @@ class Mcp2515 {
   using Order = mcp2515::TxOrder<Traits::only_buffer_0  ? mcp2515::TxPlaces::one
                                  : Traits::back_to_back ? mcp2515::TxPlaces::six
                                                         : mcp2515::TxPlaces::two>;
-  /// Bases, since most often these are empty.
-  struct Requests : mcp2515::Requests<Traits::reports_outcomes>,
-                    Order,
-                    mcp2515::Line<Port::has_interrupt_line> {};
+  using Requests = mcp2515::Requests<Traits::reports_outcomes>;
+  using Line = mcp2515::Line<Port::has_interrupt_line>;
+  using RxRing = mcp2515::Ring<Mcp2515Frame, RxQueue>;
+  using TxRing = mcp2515::Ring<Waiting, TxQueue>;
+  /// Bases, since most often these are empty: a member takes a byte even so.
+  struct Parts : Port, Traits, Requests, Order, Line, RxRing, TxRing {
+    template <typename... Arguments>
+    explicit constexpr Parts(Arguments&&... arguments)
+        : Port(static_cast<Arguments&&>(arguments)...),
+          Traits(),
+          Requests(),
+          Order(),
+          Line(),
+          RxRing(),
+          TxRing() {}
+  };
 
   static bool is_urgent(const Mcp2515Frame& frame) {
     return (frame.bytes[0] & mcp2515::priority_bit) == 0 &&
@@ -358,7 +372,10 @@ class Mcp2515 {
   uint8_t read_register(Register address);
   void write_register(Register address, uint8_t value);
   void modify_register(Register address, uint8_t mask, uint8_t value);
-  uint8_t read_quick_status();
+  ROIO_MCP2515_IN_LINE uint8_t read_quick_status() {
+    Transaction transaction(port(), static_cast<uint8_t>(Instruction::read_status));
+    return transaction.exchange(0);
+  }
   template <typename Setup>
   bool exchange_setup(const Setup& setup);
 
@@ -369,6 +386,7 @@ class Mcp2515 {
   bool end_sleep();
 
   // starting
+  bool enters(uint8_t control);
   bool reach(uint8_t control);
   template <typename Setup>
   bool configure(const Setup& setup);
@@ -379,29 +397,38 @@ class Mcp2515 {
 
   // what READ STATUS shows
   bool is_plausible(uint8_t quick);
-  void look();
-  ROIO_MCP2515_OUT_OF_LINE void note(uint8_t quick, uint8_t tries);
+  ROIO_MCP2515_OUT_OF_LINE void look();
+  ROIO_MCP2515_OUT_OF_LINE bool take_in(uint8_t quick);
+  ROIO_MCP2515_OUT_OF_LINE bool take_in_everything();
 
   // the interrupt line
+  Line& line() { return parts_; }
   bool is_called();
   void try_line();
   bool line_follows(bool low);
   void lose_line();
 
   // receiving
-  bool find_received(bool& looked);
+  RxRing& rx_queue() { return parts_; }
+  const RxRing& rx_queue() const { return parts_; }
+  uint8_t received() const { return status_ & QuickStatus::any_rx; }
+  bool look_for_frame();
   bool fetch(Mcp2515Frame& frame);
   bool read_rx_buffer(bool first, Mcp2515Frame& frame);
 
   // sending
+  uint8_t requested() const { return status_ & QuickStatus::any_txreq; }
   bool give_to_chip(const Mcp2515Frame& frame, uint8_t token);
   Status enqueue(const Mcp2515Frame& frame, uint8_t token);
   void pump();
   bool load(const Mcp2515Frame& frame, uint8_t token);
-  Order& order() { return requests_; }
-  void settle(uint8_t quick);
+  Requests& requests() { return parts_; }
+  Order& order() { return parts_; }
+  TxRing& tx_queue() { return parts_; }
+  const TxRing& tx_queue() const { return parts_; }
+  void settle(uint8_t ended);
   TxOutcome outcome_of(uint8_t buffer);
-  void end(uint8_t requests, TxOutcome outcome);
+  void end(uint8_t ended, TxOutcome outcome);
   void report(uint8_t token, TxOutcome outcome);
   ROIO_MCP2515_OUT_OF_LINE static void count(typename Traits::Count& counter) { ++counter; }
 
@@ -413,19 +440,15 @@ class Mcp2515 {
   void lose_chip();
   ROIO_MCP2515_OUT_OF_LINE void forget_chip();
 
-  Port port_;
-  Traits traits_;
+  Parts parts_;
   Counters counters_;
-  uint8_t quick_;        // receive flags that READ STATUS last showed, less what was read since
+  /// READ STATUS as it last was, less what was read since. TXnIF: the chip is at work, else 0.
+  /// TXREQ: what the chip was asked to send. RXB1 alone: it has the older frame, whether RXB0 is
+  /// full or not.
+  uint8_t status_;
   uint8_t error_flags_;  // EFLG when last looked at
   uint8_t control_;      // what CANCTRL must be
   uint8_t calls_;        // since the chip was last checked, and more when that should be soon
-  bool running_;
-  uint8_t rx1_is_older_;  // of two full receive buffers, when not 0
-  uint8_t pending_;       // what the chip was asked to send, bit for bit TXREQ in READ STATUS
-  Requests requests_;
-  mcp2515::Ring<Mcp2515Frame, RxQueue> rx_queue_;
-  mcp2515::Ring<Waiting, TxQueue> tx_queue_;
 };
 
 }  // namespace roio

@@ -28,23 +28,27 @@ constexpr uint8_t slowest_clock_factor = 12;  ///< 4 MHz told 40, and some more.
 constexpr uint8_t clock_tolerance = 8;  ///< One part in so many; crystals in use are 1 in 4 apart.
 }  // namespace mcp2515
 
-/// Has the chip enter a mode, and sees it there: configuration mode by a reset, which is repeated
-/// because one that comes before the oscillator runs is lost.
+/// Asks the chip to enter a mode: configuration mode by a reset.
 /// @param control what CANCTRL is to be.
-ROIO_MCP2515_MEMBER(bool)::reach(uint8_t control) {
+/// @return whether it is there a little later. If not it may need more time; or a reset came before
+///         the oscillator runs, and is lost: in both cases again.
+ROIO_MCP2515_MEMBER(bool)::enters(uint8_t control) {
   using mcp2515::Control;
-  write_register(Register::canctrl, control);
-  uint8_t pauses = mcp2515::pauses;
-  do {
-    if (control == Control::after_reset) {
-      const Transaction transaction(port_, static_cast<uint8_t>(Instruction::reset));
-    }
-    port_.pause(mcp2515::pause_us);
-    if (((read_register(Register::canstat) ^ control) & Control::mode_mask) == 0) {
-      return true;
-    }
-  } while (--pauses != 0);
-  return false;
+  if (control == Control::after_reset) {
+    const Transaction transaction(port(), static_cast<uint8_t>(Instruction::reset));
+  } else {
+    write_register(Register::canctrl, control);
+  }
+  port().pause(mcp2515::pause_us);
+  return ((read_register(Register::canstat) ^ control) & Control::mode_mask) == 0;
+}
+
+ROIO_MCP2515_MEMBER(bool)::reach(uint8_t control) {
+  bool is_there = false;
+  for (uint8_t left = mcp2515::pauses; !is_there && left != 0; --left) {
+    is_there = enters(control);
+  }
+  return is_there;
 }
 
 /// Writes filters, masks and timing, and reads them back.
@@ -55,7 +59,7 @@ ROIO_MCP2515_MEMBER_OF(Setup, bool)::exchange_setup(const Setup& setup) {
     uint8_t differences = 0;  // what a chip that is written to answers is nothing
     uint8_t address = 0;
     do {
-      RegisterAccess access(port_, instruction, static_cast<Register>(address));
+      RegisterAccess access(port(), instruction, static_cast<Register>(address));
       do {
         const uint8_t byte = setup[address];
         differences |= static_cast<uint8_t>(access.exchange(byte) ^ byte);
@@ -76,22 +80,27 @@ ROIO_MCP2515_MEMBER_OF(Setup, bool)::configure(const Setup& setup) {
   using mcp2515::RxControl;
   constexpr uint8_t rx0 = RxControl::by_filters | RxControl::rollover;
   write_register(Register::rxb0ctrl, rx0);
-  bool right = (read_register(Register::rxb0ctrl) & RxControl::settings) == rx0;
+  if ((read_register(Register::rxb0ctrl) & RxControl::settings) != rx0 || !exchange_setup(setup)) {
+    return false;
+  }
   for (uint8_t buffer = mcp2515::urgent_buffer; Traits::reports_outcomes && buffer != 0;
        buffer >>= 1) {
     write_register(mcp2515::txbctrl(buffer), order().level_of(buffer));
-    right = right && read_register(mcp2515::txbctrl(buffer)) == order().level_of(buffer);
+    if (read_register(mcp2515::txbctrl(buffer)) != order().level_of(buffer)) {
+      return false;
+    }
   }
-  right = right && exchange_setup(setup);
   if (Port::has_interrupt_line) {
     constexpr uint8_t received = Interrupt::rx0 | Interrupt::rx1;
     write_register(Register::caninte, received);
-    right = right && read_register(Register::caninte) == received;
+    if (read_register(Register::caninte) != received) {
+      return false;
+    }
   }
   // The three TXnIF are set and never cleared, so that every READ STATUS shows whether the chip
   // still knows what it was told.
   write_register(Register::canintf, Interrupt::tx_any);
-  return right && read_quick_status() == QuickStatus::txif;
+  return read_quick_status() == QuickStatus::txif;
 }
 
 /// @return whether the chip is there, and in configuration mode.
@@ -112,23 +121,37 @@ ROIO_MCP2515_MEMBER(Status)::begin(const Mcp2515Config& config) {
   return start(config);
 }
 
+/// Into configuration mode, to be set up, and from there into the mode that is asked for.
 ROIO_MCP2515_MEMBER_OF(Setup, Status)::start(const Setup& setup) {
+  using mcp2515::Control;
   count_what_is_forgotten();
-  if (!reset_chip() || !configure(setup)) {
+  forget_chip();
+  control_ = setup.control();
+  uint8_t control = Control::after_reset;
+  for (uint8_t left = mcp2515::pauses; left != 0; --left) {
+    if (!enters(control)) {
+      continue;
+    }
+    if (control == control_) {
+      status_ |= QuickStatus::txif;
+      if (Port::has_interrupt_line && !line().is_on()) {
+        lose_line();
+      }
+      return Status::ok;
+    }
+    if (!configure(setup)) {
+      return Status::no_chip;
+    }
+    try_line();
+    control = control_;
+    left = mcp2515::pauses;
+  }
+  if (control != control_) {
     return Status::no_chip;
   }
-  try_line();
-  control_ = setup.control();
-  if (!reach(control_)) {
-    // Not later either, when nobody expects it any more.
-    write_register(Register::canctrl, mcp2515::Control::after_reset);
-    return Status::wrong_mode;
-  }
-  running_ = true;
-  if (Port::has_interrupt_line && !requests_.is_on()) {
-    lose_line();
-  }
-  return Status::ok;
+  // Not later either, when nobody expects it any more.
+  write_register(Register::canctrl, Control::after_reset);
+  return Status::wrong_mode;
 }
 
 ROIO_MCP2515_MEMBER(Status)::stop() {
@@ -139,14 +162,14 @@ ROIO_MCP2515_MEMBER(Status)::stop() {
 
 /// Losses that the chip knows of, and frames that nobody has read.
 ROIO_MCP2515_MEMBER(void)::count_what_is_forgotten() {
-  if (!Traits::diagnoses || !running_) {
+  if (!Traits::diagnoses || !running()) {
     return;
   }
   check_chip();
-  if (running_) {
+  if (running()) {
     look();
-    counters_.discarded += (quick_ & QuickStatus::rx0) != 0 ? 1 : 0;
-    counters_.discarded += (quick_ & QuickStatus::rx1) != 0 ? 1 : 0;
+    counters_.discarded += (status_ & QuickStatus::rx0) != 0 ? 1 : 0;
+    counters_.discarded += (status_ & QuickStatus::rx1) != 0 ? 1 : 0;
   }
 }
 
@@ -195,7 +218,7 @@ ROIO_MCP2515_MEMBER(void)::load_clock_frames() {
       byte = mcp2515::clock_frame_data;
     }
     const Mcp2515Frame bytes = mcp2515::to_chip(frame);
-    Transaction transaction(port_, mcp2515::load_tx(buffer));
+    Transaction transaction(port(), mcp2515::load_tx(buffer));
     transaction.send(bytes.bytes, sizeof bytes.bytes);
   }
 }
@@ -203,13 +226,13 @@ ROIO_MCP2515_MEMBER(void)::load_clock_frames() {
 /// Sends them, and waits until all are gone.
 /// @return how long that took, or some time from limit_us on.
 ROIO_MCP2515_MEMBER(uint32_t)::time_clock_frames(uint32_t limit_us) {
-  { const Transaction transaction(port_, mcp2515::request_to_send(mcp2515::all_buffers)); }
-  const uint32_t start = port_.microseconds();
+  { const Transaction transaction(port(), mcp2515::request_to_send(mcp2515::all_buffers)); }
+  const uint32_t start = port().microseconds();
   uint32_t elapsed_us = 0;
   // A clock that stands still (interrupts are off) must not keep anybody here: a look takes 2 us.
   uint32_t looks = limit_us / 2U;
   do {
-    elapsed_us = port_.microseconds() - start;
+    elapsed_us = port().microseconds() - start;
   } while ((read_quick_status() & QuickStatus::any_txreq) != 0 && elapsed_us < limit_us &&
            --looks != 0);
   return elapsed_us;

@@ -131,7 +131,6 @@ class ChipPort {
     }
     void release() { wire_.deselect(); }
     void restart(std::uint8_t first) {
-      release();
       wire_.select();
       put(first);
     }
