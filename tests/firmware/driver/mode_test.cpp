@@ -213,6 +213,7 @@ TEST(Sleep, OnABusThatIsStuckEndsWithAWord) {
   rig.bus.hold_dominant(true);
   rig.bus.run_for(milliseconds(1));
   EXPECT_EQ(rig.can.change_mode(Mode::normal), Status::wrong_mode);
+  EXPECT_EQ(rig.can.counters().chip_losses, 0U) << "the chip is there";
   rig.bus.hold_dominant(false);
   rig.begin();
   expect_it_works(rig);

@@ -383,7 +383,7 @@ class Mcp2515 {
   bool await(mcp2515::Mode mode);
   void prepare_sleep();
   bool sleeps_or_slept();
-  bool end_sleep();
+  void end_sleep();
 
   // starting
   bool enters(uint8_t control);

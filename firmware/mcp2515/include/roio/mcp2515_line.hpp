@@ -1,5 +1,4 @@
-/// Whether the interrupt line can be believed: it is wired, or was said to be, by hand. Nothing is
-/// kept where there is none.
+/// Whether the interrupt line works, as far as is known. Nothing is kept where there is none.
 #ifndef ROIO_MCP2515_LINE_HPP
 #define ROIO_MCP2515_LINE_HPP
 

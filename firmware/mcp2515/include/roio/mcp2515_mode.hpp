@@ -21,8 +21,8 @@ ROIO_MCP2515_MEMBER(Status)::change_mode(mcp2515::Mode mode) {
     return Status::no_chip;
   }
   status_ |= QuickStatus::txif;  // unless it has forgotten meanwhile what begin() told it
-  if (before == Mode::asleep && !end_sleep()) {
-    lose_chip();
+  if (before == Mode::asleep) {
+    end_sleep();
   }
   look();
   if (!running()) {
@@ -32,8 +32,7 @@ ROIO_MCP2515_MEMBER(Status)::change_mode(mcp2515::Mode mode) {
   if (mcp2515::is_rest(mode) && (requested() != 0 || !tx_queue().empty())) {
     return Status::full;
   }
-  const uint8_t control =
-      static_cast<uint8_t>((control_ & ~Control::mode_mask) | static_cast<uint8_t>(mode));
+  const uint8_t control = Control::with_mode(control_, mode);
   if (mode == Mode::asleep) {
     prepare_sleep();
   }
@@ -75,17 +74,18 @@ ROIO_MCP2515_MEMBER(bool)::sleeps_or_slept() {
   return slept;
 }
 
-/// Has the oscillator run, unless it does already.
-/// @return whether it does, and the chip listens.
-ROIO_MCP2515_MEMBER(bool)::end_sleep() {
+/// Has the oscillator run, unless it does already, and waits until the chip listens.
+ROIO_MCP2515_MEMBER(void)::end_sleep() {
   using mcp2515::Interrupt;
   if (is_asleep()) {
     modify_register(Register::canintf, Interrupt::wake_up, Interrupt::wake_up);
   }
-  const bool is_awake = await(mcp2515::Mode::listen_only);
+  if (!await(mcp2515::Mode::listen_only)) {
+    lose_chip();
+  }
+  control_ = mcp2515::Control::with_mode(control_, mcp2515::Mode::listen_only);
   modify_register(Register::caninte, Interrupt::wake_up, 0);
   modify_register(Register::canintf, Interrupt::wake_up, 0);
-  return is_awake;
 }
 
 }  // namespace roio

@@ -140,6 +140,9 @@ struct Control {
     return static_cast<uint8_t>(static_cast<uint8_t>(mode) | clock_out |
                                 (one_shot_too ? one_shot : uint8_t{0}));
   }
+  static constexpr uint8_t with_mode(uint8_t control, Mode mode) {
+    return static_cast<uint8_t>((control & ~mode_mask) | static_cast<uint8_t>(mode));
+  }
   /// Of CANCTRL and CANSTAT.
   static constexpr Mode mode_of(uint8_t control) { return static_cast<Mode>(control & mode_mask); }
 };

@@ -168,8 +168,11 @@ ROIO_MCP2515_MEMBER(void)::count_what_is_forgotten() {
   check_chip();
   if (running()) {
     look();
-    counters_.discarded += (status_ & QuickStatus::rx0) != 0 ? 1 : 0;
-    counters_.discarded += (status_ & QuickStatus::rx1) != 0 ? 1 : 0;
+  }
+  if (running()) {
+    const uint8_t quick = read_quick_status();  // status_ need not have both
+    counters_.discarded += (quick & QuickStatus::rx0) != 0 ? 1 : 0;
+    counters_.discarded += (quick & QuickStatus::rx1) != 0 ? 1 : 0;
   }
 }
 
