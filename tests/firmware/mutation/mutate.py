@@ -42,6 +42,7 @@ TRANSMIT = "transmit_order_test.cpp"
 OTHER = "receive_test.cpp"
 BEGIN = "begin_test.cpp"
 LINE = "interrupt_line_test.cpp"
+MODE = "mode_test.cpp"
 GUARD = 240  # seconds; a driver without its rules may hang
 
 # name: (what the driver no longer does, text of one of its headers, what stands there instead,
@@ -87,7 +88,7 @@ MUTATIONS = {
         RECEIVE, ["ReceiveOrder.AnInterruptLineThatIsStuckLowIsNoFrame"]),
     "a_line_that_rises_early_tells_of_a_lost_chip": (
         "look at the interrupt line before it trusts what it read",
-        "    called = is_called();",
+        "    called = polls || port().interrupt_line_is_low();",
         "    called = true;",
         OTHER, ["ChipLoss.AFrameReadFromAChipThatWasResetIsDiscarded"]),
     "a_line_that_is_off_throws_no_frame_away": (
@@ -231,6 +232,31 @@ MUTATIONS = {
         "  return ((read_register(Register::canstat) ^ control) & Control::mode_mask) == 0;",
         "  return true;",
         BEGIN, ["Begin.OnABusThatIsNeverIdleSaysSoInTime"]),
+    "what_rested_is_asked_what_it_knows": (
+        "see whether a chip that rested still knows what it was told",
+        "  look();\n  if (!running()) {\n    control_ = 0;",
+        "  if (!running()) {\n    control_ = 0;",
+        MODE, ["Rest.WithoutPowerTheChipForgetsAndThatIsTold/InConfigurationMode"]),
+    "it_rests_when_all_is_sent": (
+        "send all before the chip rests",
+        "(requested() != 0 || !tx_queue().empty())",
+        "false",
+        MODE, ["Rest.ComesWhenAllIsSent/Asleep", "Rest.ComesWhenAllIsSent/InConfigurationMode"]),
+    "the_bus_may_wake_it": (
+        "let the bus wake a chip that sleeps",
+        "  modify_register(Register::caninte, Interrupt::wake_up, Interrupt::wake_up);",
+        "",
+        MODE, ["Sleep.EndsByTheBusWithTheFrameThatWakesItLost"]),
+    "a_sleep_that_is_over_was_one": (
+        "know that the bus may wake the chip before anybody looks",
+        "slept = is_asleep() || (read_register(Register::canintf) & mcp2515::Interrupt::wake_up) != 0;",
+        "slept = is_asleep();",
+        MODE, ["Sleep.OnABusyBusIsShortAndOkAllTheSame"]),
+    "what_woke_listens": (
+        "expect a chip that woke to listen only",
+        "  control_ = mcp2515::Control::with_mode(control_, mcp2515::Mode::listen_only);",
+        "",
+        MODE, ["Sleep.OnABusThatIsStuckEndsWithAWord"]),
 }
 
 

@@ -403,7 +403,7 @@ class Mcp2515 {
 
   // the interrupt line
   Line& line() { return parts_; }
-  bool is_called();
+  ROIO_MCP2515_IN_LINE bool is_called();
   void try_line();
   bool line_follows(bool low);
   void lose_line();

@@ -9,7 +9,6 @@
 #define ROIO_MCP2515_MODE_HPP
 
 #include <roio/mcp2515.hpp>
-#include <roio/mcp2515_start.hpp>
 
 namespace roio {
 

@@ -44,6 +44,7 @@ ROIO_MCP2515_MEMBER(bool)::fetch(Mcp2515Frame& frame) {
 /// @param first RXB0, else RXB1.
 /// @return false: the chip was lost meanwhile; the frame cannot be trusted.
 ROIO_MCP2515_MEMBER(bool)::read_rx_buffer(bool first, Mcp2515Frame& frame) {
+  const bool polls = !line().is_on();
   bool called = true;
   bool looks = true;
   uint8_t quick = 0;
@@ -55,10 +56,10 @@ ROIO_MCP2515_MEMBER(bool)::read_rx_buffer(bool first, Mcp2515Frame& frame) {
     if (frame.length() != 0) {
       transaction.receive(frame.data(), frame.length());
     }
-    called = is_called();
+    called = polls || port().interrupt_line_is_low();
     typename Port::Uninterrupted together(port());
     transaction.release();
-    looks = !called || is_called();
+    looks = polls || !called || port().interrupt_line_is_low();
     if (looks) {
       transaction.restart(static_cast<uint8_t>(Instruction::read_status));
       quick = transaction.exchange(0);

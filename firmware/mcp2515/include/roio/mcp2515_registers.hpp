@@ -146,6 +146,11 @@ struct Control {
   /// Of CANCTRL and CANSTAT.
   static constexpr Mode mode_of(uint8_t control) { return static_cast<Mode>(control & mode_mask); }
 };
+
+// How long a reset or another mode is waited for.
+constexpr uint16_t pause_us = 200;  ///< 128 clocks (8.1) of any oscillator above 640 kHz.
+constexpr uint8_t pauses = 250;     ///< 50 ms: one frame at 5 kbit/s, and 11 bits.
+
 /// CNF1..3 (registers 5-1 to 5-3).
 ///   CNF1 = SJW-1 in 7..6, BRP in 5..0 | CNF2 = BTLMODE, SAM, PS1-1 in 5..3, PropSeg-1 in 2..0 |
 ///   CNF3 = WAKFIL, PS2-1 in 2..0

@@ -8,9 +8,6 @@
 namespace roio {
 
 namespace mcp2515 {
-constexpr uint16_t pause_us = 200;  ///< 128 clocks (8.1) of any oscillator above 640 kHz.
-constexpr uint8_t pauses = 250;     ///< 50 ms: one frame at 5 kbit/s, and 11 bits.
-
 // The registers 00h..0Bh, 10h..1Bh and 20h..2Bh.
 constexpr uint8_t setup_block = 12;
 constexpr uint8_t setup_gap = 4;
