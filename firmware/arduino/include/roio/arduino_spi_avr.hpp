@@ -29,12 +29,13 @@ __attribute__((naked, noinline)) inline void spi_by_counting() {
       "roio_spi_send:\n"
       "1: ld __tmp_reg__, X+\n"
       "2: rcall 9f\n"  // 7 cycles
-      "  rjmp .+0\n"   // 2
-      "  rjmp .+0\n"
       "  nop\n"
       "  out %[spdr], __tmp_reg__\n"
       "  dec r24\n"
-      "  brne 1b\n"
+      "  breq 9f\n"
+      "  rjmp .+0\n"  // 2
+      "  nop\n"
+      "  rjmp 1b\n"
       "9: ret\n"
       // X: to where. r24: how many; then the last one.
       ".weak roio_spi_receive\n"

@@ -57,11 +57,10 @@ ROIO_MCP2515_MEMBER_OF(Setup, bool)::exchange_setup(const Setup& setup) {
     uint8_t address = 0;
     do {
       RegisterAccess access(port(), instruction, static_cast<Register>(address));
-      do {
-        const uint8_t byte = setup[address];
+      for (uint8_t left = mcp2515::setup_block; left != 0; --left) {
+        const uint8_t byte = setup[address++];
         differences |= static_cast<uint8_t>(access.exchange(byte) ^ byte);
-        ++address;
-      } while ((address & 0x0FU) != mcp2515::setup_block);
+      }
       address = static_cast<uint8_t>(address + mcp2515::setup_gap);
     } while (address != mcp2515::setup_end);
     if (instruction == Instruction::read) {
