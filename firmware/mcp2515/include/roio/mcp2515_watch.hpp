@@ -97,11 +97,6 @@ ROIO_MCP2515_MEMBER(bool)::take_in_everything() {
 
 // --- the interrupt line --------------------------------------------------------------------------
 
-/// Whether the chip asks for a look: always, where there is no line that can be believed.
-ROIO_MCP2515_MEMBER(bool)::is_called() {
-  return !line().is_on() || port().interrupt_line_is_low();
-}
-
 /// Has the chip, in configuration mode, pull the line and let go of it again.
 ROIO_MCP2515_MEMBER(void)::try_line() {
   if (Port::has_interrupt_line) {
