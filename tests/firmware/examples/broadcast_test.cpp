@@ -80,6 +80,16 @@ TEST(BroadcastUno, SaysThatThereIsNoChipAndBeginsWhenThereIs) {
 }
 
 // What was not sent for want of somebody who acknowledges comes once there is one, in order.
+TEST(Broadcast, SaysThatTheBusIsStuck) {
+  SketchRig rig(sim::BoardKind::uno, "Broadcast");
+  rig.bus.hold_dominant(true);
+  EXPECT_EQ(
+      rig.run_for_lines(500ms),
+      (Texts{"This is 0.4",
+             "Cannot begin, controller not in the mode asked for: check the wiring and the CS "
+             "pin"}));
+}
+
 TEST(BroadcastUno, LosesNoCountWhileAlone) {
   SketchRig rig(sim::BoardKind::uno, "Broadcast");
   rig.pc.controller().set_mode(sim::Controller::Mode::off);

@@ -154,6 +154,14 @@ TEST_F(Calls2014, WhatWasWrittenGoesOutBeforeItSleeps) {
   EXPECT_EQ(mode(), ChipMode::sleep);
 }
 
+TEST_F(Calls2014, StatusesHaveTheWordsOfTheCore) {
+  Texts words;
+  for (std::uint8_t i = 0; i < 11; ++i) {
+    words.emplace_back(to_string(static_cast<Status>(i)));
+  }
+  EXPECT_EQ(call("t"), words);
+}
+
 TEST_F(Calls2014, BufferPinsShowFullBuffersWhenAsked) {
   const auto pin = [this](int buffer) { return rig.board.chip().receive_buffer_pin(buffer); };
   EXPECT_EQ(pin(0), std::nullopt);

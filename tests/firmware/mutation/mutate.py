@@ -82,9 +82,9 @@ MUTATIONS = {
         RECEIVE, ["ReceiveOrder.EveryInterleavingWhilePolling"]),
     "a_line_that_is_low_is_no_frame_yet": (
         "read the status before it believes the interrupt line",
-        "  look();\n  return true;",
-        "  if (Port::has_interrupt_line) {\n    status_ |= QuickStatus::rx0;\n  } else {\n    look();\n  }\n"
-        "  return true;",
+        "    look();\n    return true;",
+        "    if (Port::has_interrupt_line) {\n      status_ |= QuickStatus::rx0;\n    } else {\n      look();\n    }\n"
+        "    return true;",
         RECEIVE, ["ReceiveOrder.AnInterruptLineThatIsStuckLowIsNoFrame"]),
     "a_line_that_rises_early_tells_of_a_lost_chip": (
         "look at the interrupt line before it trusts what it read",

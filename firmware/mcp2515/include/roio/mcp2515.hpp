@@ -360,10 +360,6 @@ class Mcp2515 {
 
   // the interrupt line
   Line& line() { return parts_; }
-  /// Whether the chip asks for a look: always, where there is no line that can be believed.
-  ROIO_MCP2515_IN_LINE bool is_called() {
-    return !line().is_on() || port().interrupt_line_is_low();
-  }
   void try_line();
   bool line_follows(bool low);
   void lose_line();

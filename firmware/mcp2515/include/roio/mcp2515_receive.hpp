@@ -11,11 +11,11 @@ namespace roio {
 /// is no frame yet: it may be stuck, or a spike.
 /// @return whether READ STATUS was read.
 ROIO_MCP2515_MEMBER(bool)::look_for_frame() {
-  if (received() != 0 || !is_called()) {
-    return false;
+  if (received() == 0 && (!line().is_on() || port().interrupt_line_is_low())) {
+    look();
+    return true;
   }
-  look();
-  return true;
+  return false;
 }
 
 /// Takes the older frame out of the chip. There must be one.

@@ -1,4 +1,5 @@
 // The calls of 2014, one by one: a letter on the serial port names it, and what it gave is printed.
+// And what statuses are in words.
 #include <SPI.h>
 #include <Roio.h>
 
@@ -50,5 +51,10 @@ void loop() {
     case '8': roio.changeMode(CANMODE_CONFIG); break;
     case '9': roio.changeMode(0xA0); break;
     case 'z': roio.reset(); break;
+    case 't':
+      for (int i = 0; i < 11; i++) {
+        Serial.println(Roio::toString(static_cast<Roio::Status>(i)));
+      }
+      break;
   }
 }
