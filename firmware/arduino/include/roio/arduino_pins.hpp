@@ -10,8 +10,9 @@
 
 #include <roio/arduino_spi.hpp>
 
-#define ROIO_OUT_OF_LINE
-#define ROIO_IN_LINE
+#define ROIO_OUT_OF_LINE __attribute__((noinline))
+/// What a compiler sees through only where it stands.
+#define ROIO_IN_LINE inline __attribute__((always_inline))
 
 namespace roio {
 

@@ -67,11 +67,14 @@ class ArduinoPort {
 
   class Transaction {
    public:
-    ROIO_IN_LINE Transaction(ArduinoPort& port, uint8_t first) : port_(port), is_sending_(true) {
+    ROIO_IN_LINE Transaction(ArduinoPort& port, uint8_t first)
+        : port_(port), is_selected_(true), is_sending_(true) {
       port_.select(first);
     }
     ROIO_IN_LINE ~Transaction() {
-      release();
+      if (is_selected_) {
+        release();
+      }
       SPI.endTransaction();
     }
     Transaction(const Transaction&) = delete;
@@ -103,15 +106,19 @@ class ArduinoPort {
         is_sending_ = false;
       }
       port_.chip_select_.set_high();
+      is_selected_ = false;
     }
     ROIO_IN_LINE void restart(uint8_t first) {
       port_.start(first);
+      is_selected_ = true;
       is_sending_ = true;
     }
 
    private:
     ArduinoPort& port_;
-    bool is_sending_;  // known to the compiler at each place: it costs nothing
+    // Known to the compiler at each place: they cost nothing.
+    bool is_selected_;
+    bool is_sending_;
   };
 
   class Uninterrupted : InterruptsOff {
