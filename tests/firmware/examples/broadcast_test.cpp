@@ -80,7 +80,7 @@ TEST(BroadcastUno, SaysThatThereIsNoChipAndBeginsWhenThereIs) {
 }
 
 // What was not sent for want of somebody who acknowledges comes once there is one, in order.
-TEST(Broadcast, SaysThatTheBusIsStuck) {
+TEST(BroadcastUno, SaysThatTheBusIsStuck) {
   SketchRig rig(sim::BoardKind::uno, "Broadcast");
   rig.bus.hold_dominant(true);
   EXPECT_EQ(
