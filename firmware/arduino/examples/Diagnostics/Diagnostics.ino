@@ -110,10 +110,11 @@ void printState() {
 
 // The error counters fall by one with each message that goes well: it may take them a while.
 void printCounters(uint8_t transmitErrors, uint8_t receiveErrors) {
-  printNumber(F("  sent "), roio.counters().sent);
-  printNumber(F(", received "), roio.counters().received);
-  printNumber(F(", lost "), roio.counters().overflows);
-  printNumber(F(", bus-offs "), roio.counters().bus_offs);
+  const auto counters = roio.counters();
+  printNumber(F("  sent "), counters.sent);
+  printNumber(F(", received "), counters.received);
+  printNumber(F(", lost "), counters.overflows);
+  printNumber(F(", bus-offs "), counters.bus_offs);
   Serial.print(F("; "));
   printState();
   printNumber(F(", error counters "), transmitErrors);
@@ -129,7 +130,7 @@ void report() {
   uint8_t transmitErrors = 0;
   uint8_t receiveErrors = 0;
   roio.errorCounters(transmitErrors, receiveErrors);
-  const auto& counters = roio.counters();
+  const auto counters = roio.counters();
   printVerdict(counters.sent != sent,
                counters.bus_offs != busOffs || roio.state() == Roio::State::bus_off,
                counters.message_errors != errors, receiveErrors >= passiveLimit);

@@ -1,6 +1,6 @@
-/// FlashSetup: what begin() makes of the chip, as it stands in the flash of an AVR: for arguments
-/// that are known when compiling. From RAM it would have to be put there first, which takes four
-/// bytes of program for each.
+/// PlainSetup: what begin() makes of the chip of a plain node, for an AVR. What is known when
+/// compiling whatever the arguments are stands in flash: from RAM it would have to be put there
+/// first, which takes four bytes of program for each.
 #ifndef ROIO_ARDUINO_SETUP_AVR_HPP
 #define ROIO_ARDUINO_SETUP_AVR_HPP
 
@@ -11,33 +11,41 @@
 namespace roio {
 
 /// To Mcp2515::start() the same as a Mcp2515Config.
-class FlashSetup {
+/// @tparam Cnf mcp2515::Cnf::word().
+template <uint32_t Cnf>
+class PlainSetup {
  public:
-  /// @param config of which the compiler knows every byte.
-  ROIO_MCP2515_IN_LINE explicit FlashSetup(const Mcp2515Config& config)
-      : control_(config.control()) {
-    // Row for row what Mcp2515Config::operator[] says, four times 0 between rows. A constant of C++
-    // cannot be made of arguments.
+  ROIO_MCP2515_IN_LINE PlainSetup(const Mcp2515FilterPair& filters, uint8_t control)
+      : filters_{mcp2515_register(filters.filter[0], 0), mcp2515_register(filters.filter[0], 1),
+                 mcp2515_register(filters.filter[0], 2), mcp2515_register(filters.filter[0], 3),
+                 mcp2515_register(filters.filter[1], 0), mcp2515_register(filters.filter[1], 1),
+                 mcp2515_register(filters.filter[1], 2), mcp2515_register(filters.filter[1], 3)},
+        control_(control) {
+    constexpr uint32_t mask = mcp2515_filters_of(Address{0, 0}).mask;
+    // Registers 20h..2Bh: two masks, CNF3, CNF2, CNF1, CANINTE. (GCC 5 forgets in which section the
+    // static member of a template is to be.)
     __asm__(
         ".pushsection .progmem.roio,\"a\",@progbits\n"
-        "1: .byte %1,%2,%3,%4, %5,%6,%7,%8, %1,%2,%3,%4, 0,0,0,0\n"
-        "   .byte %1,%2,%3,%4, %5,%6,%7,%8, %1,%2,%3,%4, 0,0,0,0\n"
-        "   .byte %9,%10,%11,%12, %9,%10,%11,%12, %13,%14,%15,%16\n"
+        "1: .byte %1,%2,%3,%4, %1,%2,%3,%4, %5,%6,%7,0\n"
         ".popsection\n"
         "ldi %A0, lo8(1b)\n"
         "ldi %B0, hi8(1b)\n"
-        : "=d"(image_)
-        : "i"(config[0x00]), "i"(config[0x01]), "i"(config[0x02]), "i"(config[0x03]),
-          "i"(config[0x04]), "i"(config[0x05]), "i"(config[0x06]), "i"(config[0x07]),
-          "i"(config[0x20]), "i"(config[0x21]), "i"(config[0x22]), "i"(config[0x23]),
-          "i"(config[0x28]), "i"(config[0x29]), "i"(config[0x2A]), "i"(config[0x2B]));
+        : "=d"(rest_)
+        : "i"(mcp2515_register(mask, 0)), "i"(mcp2515_register(mask, 1)),
+          "i"(mcp2515_register(mask, 2)), "i"(mcp2515_register(mask, 3)),
+          "i"(static_cast<uint8_t>(Cnf)), "i"(static_cast<uint8_t>(Cnf >> 8)),
+          "i"(static_cast<uint8_t>(Cnf >> 16)));
   }
 
-  uint8_t operator[](uint8_t address) const { return pgm_read_byte(image_ + address); }
+  uint8_t operator[](uint8_t address) const {
+    return (address & 0x20U) == 0 ? filters_[address & 7U]
+                                  : pgm_read_byte(rest_ + (address & 0x0FU));
+  }
   uint8_t control() const { return control_; }
 
  private:
-  const uint8_t* image_;
+  uint8_t filters_[8];
+  const uint8_t* rest_;
   uint8_t control_;
 };
 
