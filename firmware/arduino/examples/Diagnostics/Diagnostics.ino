@@ -110,11 +110,10 @@ void printState() {
 
 // The error counters fall by one with each message that goes well: it may take them a while.
 void printCounters(uint8_t transmitErrors, uint8_t receiveErrors) {
-  const auto counters = roio.counters();
-  printNumber(F("  sent "), counters.sent);
-  printNumber(F(", received "), counters.received);
-  printNumber(F(", lost "), counters.overflows);
-  printNumber(F(", bus-offs "), counters.bus_offs);
+  printNumber(F("  sent "), roio.counters().sent);
+  printNumber(F(", received "), roio.counters().received);
+  printNumber(F(", lost "), roio.counters().overflows);
+  printNumber(F(", bus-offs "), roio.counters().bus_offs);
   Serial.print(F("; "));
   printState();
   printNumber(F(", error counters "), transmitErrors);
@@ -130,7 +129,7 @@ void report() {
   uint8_t transmitErrors = 0;
   uint8_t receiveErrors = 0;
   roio.errorCounters(transmitErrors, receiveErrors);
-  const auto counters = roio.counters();
+  const auto& counters = roio.counters();
   printVerdict(counters.sent != sent,
                counters.bus_offs != busOffs || roio.state() == Roio::State::bus_off,
                counters.message_errors != errors, receiveErrors >= passiveLimit);

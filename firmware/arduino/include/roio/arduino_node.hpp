@@ -4,12 +4,8 @@
 
 #include <roio/arduino_message.hpp>
 #include <roio/arduino_port.hpp>
+#include <roio/arduino_setup.hpp>
 #include <roio/mcp2515.hpp>
-
-#if defined(__AVR__) && defined(__OPTIMIZE__)
-#define ROIO_AVR_SETUP
-#include <roio/arduino_setup_avr.hpp>
-#endif
 
 namespace roio {
 
@@ -83,16 +79,12 @@ class ArduinoNode {
   template <uint32_t OscHz, uint32_t BitrateBps>
   ROIO_IN_LINE Status begin(Address own, Mode mode = Mode::normal) {
     constexpr uint32_t cnf = mcp2515::Cnf::word(bit_timing<OscHz, BitrateBps>());
-#if defined(ROIO_AVR_SETUP)
     if (!is_valid_source(own) || mcp2515::is_rest(mode)) {
       return Status::bad_argument;
     }
     take_address(own);
     return driver_.start(
         PlainSetup<cnf>(mcp2515_filters_of(own), mcp2515::Control::of(mode, false)));
-#else
-    return begin_plain(cnf, own, mode);
-#endif
   }
   /// With a bit timing of one's own.
   /// @return ok; bad_argument: no valid address (subnet 0..31, node 0..254), or a mode that rests;
@@ -109,9 +101,7 @@ class ArduinoNode {
     take_address(own);
     return driver_.begin(Mcp2515Config(timing, filters, mode));
   }
-  static Filters everything() {
-    return mcp2515_filters_of_everything();
-  }
+  static Filters everything() { return mcp2515_filters_of_everything(); }
   /// The filters for an Interest. When `exact` is false the chip lets through more than was asked
   /// for; in Mode::listen_only it lets everything through, whatever the filters are.
   /// @param filters written on ok only.
@@ -137,16 +127,12 @@ class ArduinoNode {
   /// Looks after the chip. receive() and available() do it, too; a program that only sends calls
   /// this in each loop().
   /// @return ok; no_chip: the chip was reset or is not there: begin() again.
-  Status poll() {
-    return driver_.poll();
-  }
+  Status poll() { return driver_.poll(); }
 
   /// The oldest message that has come.
   /// @param message one on ok only; else anything.
   /// @return ok; empty; no_chip as poll().
-  ROIO_NODISCARD Status receive(Message& message) {
-    return driver_.receive(message.frame());
-  }
+  ROIO_NODISCARD Status receive(Message& message) { return driver_.receive(message.frame()); }
 
   /// Sends a message. Never waits.
   /// @param message its source becomes this node, also when it was not sent.
@@ -159,50 +145,30 @@ class ArduinoNode {
     mcp2515::put_source(own_, message.frame());
     return driver_.send(message.frame());
   }
-  ROIO_NODISCARD Status send(Message&& message) {
-    return send(message);
-  }
+  ROIO_NODISCARD Status send(Message&& message) { return send(message); }
 
   /// Any frame as it is on the bus, with Options::every_frame.
-  ROIO_NODISCARD Status receive(Frame& frame) {
-    return driver_.receive(frame);
-  }
+  ROIO_NODISCARD Status receive(Frame& frame) { return driver_.receive(frame); }
   /// @param frame sent as it is: what it has for a source, too.
-  ROIO_NODISCARD Status send(const Frame& frame) {
-    return driver_.send(frame);
-  }
+  ROIO_NODISCARD Status send(const Frame& frame) { return driver_.send(frame); }
 
   /// What the identifier of an extended frame says.
-  static Header headerOf(const Frame& frame) {
-    return unpack_id(frame.id);
-  }
+  static Header headerOf(const Frame& frame) { return unpack_id(frame.id); }
 
   /// Everybody in a subnet, as a destination.
-  static constexpr Address everybody(uint8_t subnet) {
-    return broadcast_of(subnet);
-  }
+  static constexpr Address everybody(uint8_t subnet) { return broadcast_of(subnet); }
 
   // --- what goes on ------------------------------------------------------------------------------
 
   /// Whether the chip is at work; if not, begin() again.
-  bool running() const {
-    return driver_.running();
-  }
-  ROIO_IN_LINE Counters counters() const {
-    return driver_.counters();
-  }
+  bool running() const { return driver_.running(); }
+  ROIO_IN_LINE Counters counters() const { return driver_.counters(); }
   /// How many messages are in the receive queue.
-  uint8_t fetched() const {
-    return driver_.fetched();
-  }
+  uint8_t fetched() const { return driver_.fetched(); }
   /// How many messages wait in the send queue, and in the chip.
-  uint8_t waiting() const {
-    return static_cast<uint8_t>(driver_.waiting() + driver_.in_flight());
-  }
+  uint8_t waiting() const { return static_cast<uint8_t>(driver_.waiting() + driver_.in_flight()); }
   /// Asks the chip: active, warning (an error counter above 95), passive (above 127) or bus_off.
-  State state() {
-    return driver_.read_state();
-  }
+  State state() { return driver_.read_state(); }
   /// The chip's error counters.
   void errorCounters(uint8_t& transmit, uint8_t& receive) {
     driver_.read_error_counters(transmit, receive);
@@ -217,21 +183,15 @@ class ArduinoNode {
   /// Whether the chip's INT is connected to the pin that was named for it. If not, each call asks
   /// the chip, and nothing else changes. Known from begin() on, and noticed when a wire comes off
   /// later.
-  bool interruptIsConnected() const {
-    return driver_.line_is_on();
-  }
+  bool interruptIsConnected() const { return driver_.line_is_on(); }
   /// Whether the chip's pins RX0BF and RX1BF are driven, and low while their buffer is full, for a
   /// light at each. Not driven after begin().
-  void showFullBuffers(bool shows = true) {
-    driver_.show_full_buffers(shows);
-  }
+  void showFullBuffers(bool shows = true) { driver_.show_full_buffers(shows); }
 
   // --- other modes -------------------------------------------------------------------------------
 
   /// Another mode: Mcp2515::change_mode().
-  ROIO_NODISCARD Status changeMode(Mode mode) {
-    return driver_.change_mode(mode);
-  }
+  ROIO_NODISCARD Status changeMode(Mode mode) { return driver_.change_mode(mode); }
 
   /// Puts the chip to sleep, when all is sent: some uA, until wake(). receive() until it is empty
   /// before. The next message on the bus wakes the chip and makes INT low, for a processor that
@@ -239,20 +199,14 @@ class ArduinoNode {
   /// @return ok, also when the bus has woken it already; full: something is still to be sent:
   /// poll(),
   ///         and try again; no_chip, wrong_mode: begin() again.
-  ROIO_NODISCARD Status sleep() {
-    return changeMode(Mode::asleep);
-  }
+  ROIO_NODISCARD Status sleep() { return changeMode(Mode::asleep); }
   /// Whether it still sleeps: the bus may have woken it.
-  bool isAsleep() {
-    return driver_.is_asleep();
-  }
+  bool isAsleep() { return driver_.is_asleep(); }
   /// Takes part again, be it asleep or woken by the bus: takes 1 ms and what the crystal needs to
   /// start, or 100 ms when all goes wrong.
   /// @return ok; no_chip: it has been without power, or does not wake; wrong_mode: the bus is never
   ///         quiet: begin() again.
-  ROIO_NODISCARD Status wake(Mode mode = Mode::normal) {
-    return changeMode(mode);
-  }
+  ROIO_NODISCARD Status wake(Mode mode = Mode::normal) { return changeMode(mode); }
 
   // --- words -------------------------------------------------------------------------------------
 

@@ -1,6 +1,5 @@
-/// PlainSetup: what begin() makes of the chip of a plain node, for an AVR. What is known when
-/// compiling whatever the arguments are stands in flash: from RAM it would have to be put there
-/// first, which takes four bytes of program for each.
+/// PlainSetup for an AVR. What is known when compiling whatever the arguments are stands in flash:
+/// from RAM it would have to be put there first, which takes four bytes of program for each.
 #ifndef ROIO_ARDUINO_SETUP_AVR_HPP
 #define ROIO_ARDUINO_SETUP_AVR_HPP
 
