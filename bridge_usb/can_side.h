@@ -118,6 +118,7 @@ class CanSide {
     static constexpr bool all_kinds = true;
     static constexpr bool back_to_back = true;
     static constexpr bool reports_outcomes = true;
+    static constexpr bool doubts_line = false;  // the Port finds out; and each cycle counts
     void on_outcome(uint8_t token, TxOutcome outcome) {
       slots.end(token, outcome == TxOutcome::sent      ? serial::Outcome::sent
                        : outcome == TxOutcome::unknown ? serial::Outcome::unknown

@@ -129,6 +129,9 @@ struct Mcp2515Traits {
   /// Six normal frames follow one another without a gap before the chip runs empty, in place of
   /// two: for a node that fills the bus. Costs 2 SPI bytes more with each frame.
   static constexpr bool back_to_back = false;
+  /// Whether an interrupt line may turn out not to be connected. If not, the Port has to see to it
+  /// that a line that is off counts as low.
+  static constexpr bool doubts_line = true;
   /// Whether anybody wants to know what became of each frame. If not, there are no tokens, no
   /// abort() and no one-shot mode, and the driver does not ask the chip just for that.
   static constexpr bool reports_outcomes = false;
@@ -298,7 +301,7 @@ class Mcp2515 {
                                  : Traits::back_to_back ? mcp2515::TxPlaces::six
                                                         : mcp2515::TxPlaces::two>;
   using Requests = mcp2515::Requests<Traits::reports_outcomes>;
-  using Line = mcp2515::Line<Port::has_interrupt_line>;
+  using Line = mcp2515::Line<Port::has_interrupt_line, Traits::doubts_line>;
   using RxRing = mcp2515::Ring<Mcp2515Frame, RxQueue>;
   using TxRing = mcp2515::Ring<Waiting, TxQueue>;
   /// Bases, since most often these are empty: a member takes a byte even so.

@@ -5,7 +5,8 @@
 namespace roio {
 namespace mcp2515 {
 
-template <bool IsThere>
+/// @tparam IsDoubted whether it may turn out not to work.
+template <bool IsThere, bool IsDoubted>
 class Line {
  public:
   constexpr Line() : is_on_(false) {}
@@ -16,10 +17,17 @@ class Line {
   bool is_on_;
 };
 
-template <>
-class Line<false> {
+template <bool IsDoubted>
+class Line<false, IsDoubted> {
  public:
   static bool is_on() { return false; }
+  static void set_on(bool) {}
+};
+
+template <>
+class Line<true, false> {
+ public:
+  static bool is_on() { return true; }
   static void set_on(bool) {}
 };
 

@@ -99,7 +99,7 @@ ROIO_MCP2515_MEMBER(bool)::take_in_everything() {
 
 /// Has the chip, in configuration mode, pull the line and let go of it again.
 ROIO_MCP2515_MEMBER(void)::try_line() {
-  if (Port::has_interrupt_line) {
+  if (Port::has_interrupt_line && Traits::doubts_line) {
     const bool falls = line_follows(true);
     const bool rises = line_follows(false);  // in any case: no flag may stay
     line().set_on(falls && rises);
