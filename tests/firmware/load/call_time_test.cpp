@@ -51,10 +51,10 @@ TEST_P(CallTime, NoLongerThanMeasured) {
 }
 
 INSTANTIATE_TEST_SUITE_P(, CallTime,
-                         testing::Values(Row{"CallTimePolled", 0, 7, 29.2, 36.5, 10.2, 17.2},
-                                         Row{"CallTimePolled", 8, 15, 39.0, 46.2, 10.2, 26.2},
-                                         Row{"CallTimeInterrupt", 0, 6, 24.2, 31.5, 2.6, 16.5},
-                                         Row{"CallTimeInterrupt", 8, 14, 34.0, 41.5, 2.6, 25.5}),
+                         testing::Values(Row{"CallTimePolled", 0, 7, 28.0, 35.0, 9.8, 16.6},
+                                         Row{"CallTimePolled", 8, 15, 37.6, 44.6, 9.8, 25.6},
+                                         Row{"CallTimeInterrupt", 0, 6, 24.0, 31.4, 2.6, 16.6},
+                                         Row{"CallTimeInterrupt", 8, 14, 34.0, 41.2, 2.6, 25.6}),
                          [](const testing::TestParamInfo<Row>& row) {
                            return std::string(row.param.image) + std::to_string(row.param.length) +
                                   "Bytes";
