@@ -40,11 +40,10 @@ class Port : public ArduinoPort<FixedPin<ROIO_BRIDGE_CS_PIN>, FixedPin<ROIO_BRID
     constexpr mcp2515::Register registers[] = {mcp2515::Register::caninte,
                                                mcp2515::Register::canintf};
     for (const mcp2515::Register address : registers) {
-      Transaction transaction(*this);
-      transaction.exchange(static_cast<uint8_t>(mcp2515::Instruction::bit_modify));
-      transaction.exchange(static_cast<uint8_t>(address));
-      transaction.exchange(wake_up);
-      transaction.exchange(on ? wake_up : 0);
+      Transaction transaction(*this, static_cast<uint8_t>(mcp2515::Instruction::bit_modify));
+      transaction.put(static_cast<uint8_t>(address));
+      transaction.put(wake_up);
+      transaction.put(on ? wake_up : 0);
     }
   }
 
@@ -182,7 +181,7 @@ class CanSide {
       driver_.read_error_counters(transmit, receive);
     }
   }
-  const Driver::Counters& counters() const { return driver_.counters(); }
+  Driver::Counters counters() const { return driver_.counters(); }
   Slots& slots() { return driver_.traits().slots; }
   /// 0: no controller answers.
   uint32_t osc_hz() const { return osc_hz_; }

@@ -16,7 +16,7 @@ class Tally {
 
   /// @param index 0..counter_count - 1.
   uint32_t value(uint8_t index) {
-    const auto& driver = can_.counters();
+    const auto driver = can_.counters();
     switch (index) {
       case 0:
         return dropped;

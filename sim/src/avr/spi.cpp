@@ -22,6 +22,8 @@ constexpr unsigned wcol = 0x40;
 constexpr unsigned spi2x = 0x01;
 // PRR
 constexpr unsigned prspi = 0x04;
+// Between the end of a byte and the end of the first write that takes effect.
+constexpr AvrCore::Cycle cycles_to_next = 2;
 // Table 18-5, without SPI2X.
 constexpr std::array<unsigned, 4> dividers{4, 16, 64, 128};
 
@@ -38,7 +40,9 @@ AvrSpi::AvrSpi(AvrCore& core) : core_(core), vector_(core.vector(spcr, spie_bit)
 
 void AvrSpi::reset() {
   end_.reset();
+  free_at_ = 0;
   received_ = 0;
+  is_unread_ = false;
   seen_ = 0;
   core_.data(spcr) = 0;
   core_.data(spsr) = 0;
@@ -84,14 +88,17 @@ void AvrSpi::data_accessed() {
   seen_ = 0;
 }
 
+void AvrSpi::violation(const char* what) const {
+  if (violated_) {
+    violated_(what);
+  }
+}
+
 void AvrSpi::write_data(std::uint16_t /*address*/, std::uint8_t value) {
   data_accessed();
   if (end_) {
     core_.data(spsr) = static_cast<std::uint8_t>(core_.data(spsr) | wcol);
-    if (collision_) {
-      collision_();
-    }
-    return;
+    return violation("SPDR written while a byte is under way");
   }
   std::uint8_t& control = core_.data(spcr);
   if ((control & spe) != 0 && (control & mstr) != 0 && slave_select_is_low_ &&
@@ -104,8 +111,13 @@ void AvrSpi::write_data(std::uint16_t /*address*/, std::uint8_t value) {
   }
   const bool twice = (core_.data(spsr) & spi2x) != 0;
   const unsigned divider = dividers.at(control & rate_mask) / (twice ? 2U : 1U);
-  out_ = value;
+  const bool is_too_early = core_.effect_cycle() < free_at_;
+  if (is_too_early) {
+    violation("SPDR written in the cycle after a byte: 0 goes out");
+  }
+  out_ = is_too_early ? std::uint8_t{0} : value;
   end_ = core_.effect_cycle() + AvrCore::Cycle{8} * divider;
+  free_at_ = *end_ + cycles_to_next;
   core_.limit(*end_);
 }
 
@@ -114,13 +126,19 @@ std::uint8_t AvrSpi::read_status(std::uint16_t /*address*/) {
   return seen_;
 }
 
+// While a byte is under way SPDR still has the one before, which may be what the program wants.
 std::uint8_t AvrSpi::read_data(std::uint16_t /*address*/) {
   data_accessed();
+  if (end_ && !is_unread_) {
+    violation("SPDR read before the byte is there");
+  }
+  is_unread_ = false;
   return received_;
 }
 
 void AvrSpi::finish(std::uint8_t in) {
   received_ = in_wire_order(in);
+  is_unread_ = true;
   end_.reset();
   core_.raise(vector_);
 }

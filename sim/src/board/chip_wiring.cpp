@@ -13,7 +13,7 @@ constexpr std::uint8_t nothing_there = 0xFF;
 ChipWiring::ChipWiring(AvrCore& core, AvrPorts& ports, AvrSpi& spi, const BoardModel& model,
                        Board board)
     : core_(core), ports_(ports), spi_(spi), model_(model), board_(std::move(board)) {
-  spi.on_collision([this] { board_.violation("SPDR written while a byte is under way"); });
+  spi.on_violation([this](const char* what) { board_.violation(what); });
   spi.set_slave_select([this] {
     return !ports_.level(model_.ss) && ports_.outside(model_.ss) == std::optional(false);
   });

@@ -86,8 +86,8 @@ void Mcp2515Chip::start(bool power_on) {
   start_oscillator(power_on ? options_.crystal_start : SimTime(0));
 }
 
-// Filters, masks and buffers have no reset value: they hold anything at power-on, and a reset
-// leaves them alone.
+// Filters and buffers have no reset value: they hold anything at power-on, and a reset leaves them
+// alone. Masks are 0.
 void Mcp2515Chip::reset_registers(bool power_on) {
   std::mt19937 generator(options_.power_on_seed);
   for (std::uint8_t address = 0; address < map::register_count; ++address) {
@@ -113,7 +113,7 @@ void Mcp2515Chip::oscillator_runs() {
     registers_[map::canctrl] = static_cast<std::uint8_t>(
         (registers_[map::canctrl] & 0x1F) | static_cast<int>(awake) << map::reqop_shift);
     mode_ = awake;
-    controller_.set_mode(Controller::Mode::listen_only);
+    listen();
   }
 }
 
@@ -158,10 +158,13 @@ void Mcp2515Chip::enter_mode(OperationMode mode) {
   }
   switch (mode) {
     case OperationMode::normal:
+      entering_ = mode;
+      controller_.set_mode(Controller::Mode::normal);
+      controller_.request();
+      return;
     case OperationMode::listen_only:
       entering_ = mode;
-      controller_.set_mode(mode == OperationMode::normal ? Controller::Mode::normal
-                                                         : Controller::Mode::listen_only);
+      listen();
       controller_.request();
       return;
     case OperationMode::sleep:
@@ -174,12 +177,22 @@ void Mcp2515Chip::enter_mode(OperationMode mode) {
       return start_loopback();
     case OperationMode::configuration:
       controller_.set_mode(Controller::Mode::off);
-      controller_.reset_error_counters();  // (10.1)
-      on_confinement_changed();
+      forget_errors();  // (10.1)
       bus_.leave(controller_);
       mode_ = mode;
       return;
   }
+}
+
+// The error counters are reset, and stand still (10.3).
+void Mcp2515Chip::listen() {
+  forget_errors();
+  controller_.set_mode(Controller::Mode::listen_only);
+}
+
+void Mcp2515Chip::forget_errors() {
+  controller_.reset_error_counters();
+  on_confinement_changed();
 }
 
 void Mcp2515Chip::on_integrated() {

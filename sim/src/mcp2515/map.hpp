@@ -106,6 +106,10 @@ constexpr bool is_filter_or_mask(std::uint8_t address) {
          (address >= 0x20 && address < cnf3);
 }
 
+constexpr bool is_mask(std::uint8_t address) {
+  return is_filter_or_mask(address) && address >= mask(0);
+}
+
 constexpr Access access(std::uint8_t address) {
   const std::uint8_t column = address & 0x0F;
   if (is_canstat(address) || address == tec || address == rec) {
@@ -117,8 +121,10 @@ constexpr Access access(std::uint8_t address) {
   if (is_filter_or_mask(address)) {
     // SIDL: SID2..0, EXIDE (filters only), EID17..16
     const bool is_sidl = column % 4 == 1;
-    const bool is_mask = address >= 0x20;
-    return {static_cast<std::uint8_t>(!is_sidl ? 0xFF : is_mask ? 0xE3 : 0xEB), true, false};
+    return {static_cast<std::uint8_t>(!is_sidl           ? 0xFF
+                                      : is_mask(address) ? 0xE3
+                                                         : 0xEB),
+            true, false};
   }
   switch (address) {
     case bfpctrl:
@@ -157,10 +163,11 @@ constexpr Access access(std::uint8_t address) {
   return {0, false, false};
 }
 
-/// Filters, masks and buffers, which the datasheet resets to "unknown".
+/// Filters and buffers, which the datasheet resets to "unknown".
 constexpr bool has_no_reset_value(std::uint8_t address) {
   const bool in_buffer = address >= transmit_control(0) && (address & 0x0F) != 0;
-  return is_filter_or_mask(address) || (in_buffer && !is_canstat(address) && !is_canctrl(address));
+  return (is_filter_or_mask(address) && !is_mask(address)) ||
+         (in_buffer && !is_canstat(address) && !is_canctrl(address));
 }
 
 /// The bits that a register without reset value has at all; the others read as 0.

@@ -51,10 +51,14 @@ bool Mcp2515Chip::filter_matches(const Frame& frame, int filter) const {
   return ((id ^ identifier_at(at)) & mask & compared) == 0;
 }
 
+bool Mcp2515Chip::takes_everything() const {
+  return mode_ == OperationMode::listen_only && !options_.listen_only_filters;
+}
+
 int Mcp2515Chip::matching_filter(const Frame& frame, int buffer) const {
   const std::uint8_t rxm = registers_.at(map::receive_control(buffer)) & map::rxm;
   const int first = buffer == 0 ? 0 : 2;
-  if (rxm == map::rxm) {
+  if (rxm == map::rxm || takes_everything()) {
     return first;  // any message
   }
   // 01 and 10 were "standard only" and "extended only" once, and are reserved now.

@@ -1,14 +1,14 @@
 #!/usr/bin/env python3
-"""What a node costs beside the serial port: usage: check_size.py AVR_SIZE IMAGES MOST_FLASH MOST_RAM
+"""What a node costs beside a sketch that does nothing: usage: check_size.py AVR_SIZE IMAGES BUDGET...
 
-IMAGES is a board's folder with Empty.elf, SerialEcho.elf and Echo.elf. Fails when Echo takes more than
-Empty by over MOST_FLASH bytes of flash or MOST_RAM bytes of static RAM.
+IMAGES is a board's folder with Empty.elf and the sketches that BUDGETs name: SKETCH:FLASH:RAM, the most
+bytes of flash and of static RAM that it may take more than Empty does. Says what each takes.
 """
 import pathlib
 import subprocess
 import sys
 
-program, images, most_flash, most_ram = sys.argv[1:]
+program, images, *budgets = sys.argv[1:]
 
 
 def size(name):
@@ -23,11 +23,14 @@ def size(name):
 
 
 empty_flash, empty_ram = size("Empty")
-print(f"{'sketch':<12} {'flash':>6} {'over Empty':>11} {'RAM':>6} {'over Empty':>11}")
-for name in ("Empty", "SerialEcho", "Echo"):
+over_budget = []
+print(f"{'beyond Empty':<16} {'flash':>6} {'at most':>8} {'RAM':>6} {'at most':>8}")
+for budget in budgets:
+    name, most_flash, most_ram = budget.split(":")
     flash, ram = size(name)
     over_flash, over_ram = flash - empty_flash, ram - empty_ram
-    print(f"{name:<12} {flash:>6} {over_flash:>11} {ram:>6} {over_ram:>11}")
-print(f"{'at most':<12} {'':>6} {most_flash:>11} {'':>6} {most_ram:>11}")
-if over_flash > int(most_flash) or over_ram > int(most_ram):
-    sys.exit("Echo is over its budget")
+    print(f"{name:<16} {over_flash:>6} {most_flash:>8} {over_ram:>6} {most_ram:>8}")
+    if over_flash > int(most_flash) or over_ram > int(most_ram):
+        over_budget.append(name)
+if over_budget:
+    sys.exit(f"over budget: {', '.join(over_budget)}")

@@ -13,14 +13,19 @@ struct Port {
 
   class Transaction {
    public:
-    explicit Transaction(Port&) { select(true); }
-    ~Transaction() { select(false); }
-    uint8_t exchange(uint8_t out);
+    Transaction(Port&, uint8_t first) {
+      select(true);
+      put(first);
+    }
+    ~Transaction() { release(); }
+    void put(uint8_t byte) { exchange(byte); }
+    uint8_t exchange(uint8_t byte);
     void send(const uint8_t* bytes, uint8_t count);
     void receive(uint8_t* bytes, uint8_t count);
-    void restart() {
-      select(false);
+    void release() { select(false); }
+    void restart(uint8_t first) {
       select(true);
+      put(first);
     }
 
    private:

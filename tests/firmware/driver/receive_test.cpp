@@ -67,6 +67,24 @@ TEST(Receive, RemoteAndStandardFramesAreCountedAndDropped) {
   EXPECT_EQ(rig.can.counters().received, 1U);
 }
 
+TEST(Receive, WhileListeningEverybodysMessagesComeAndNoOtherKind) {
+  // The chip lets everything through then, whatever its filters say (10.3).
+  Rig<> rig;
+  sim::HostNode witness(rig.bus, 500'000);
+  rig.begin(plain_config(mcp2515::Mode::listen_only));
+  constexpr std::uint32_t to_another = to_own ^ 0x2000;
+  rig.peer_sends({{0x123, FrameKind::standard, 2, {1, 2}}});
+  EXPECT_EQ(rig.receive_all(), std::vector<Frame>{});
+  rig.peer_sends({{to_own, FrameKind::extended_remote, 3, {}}});
+  EXPECT_EQ(rig.receive_all(), std::vector<Frame>{});
+  EXPECT_EQ(rig.can.counters().foreign, 2U);
+  rig.peer_sends({numbered(1)});
+  EXPECT_EQ(rig.receive_all(), std::vector{numbered(1)});
+  rig.peer_sends({numbered(2, 4, to_another)});
+  EXPECT_EQ(rig.receive_all(), (std::vector{numbered(2, 4, to_another)}));
+  EXPECT_EQ(rig.can.counters().received, 2U);
+}
+
 struct AllKinds : TestTraits {
   static constexpr bool all_kinds = true;
 };

@@ -50,65 +50,67 @@ GUARD = 240  # seconds; a driver without its rules may hang
 MUTATIONS = {
     "rxb1_is_older_when_rxb0_was_freed_beside_it": (
         "remember that RXB1, full when RXB0 was freed, has the older frame",
-        "rx1_is_older_ = first ? quick_ & QuickStatus::rx1 : 0;",
-        "rx1_is_older_ = 0;",
+        "    if (first) {\n      status_ |= QuickStatus::rx1;",
+        "    if (false) {\n      status_ |= QuickStatus::rx1;",
         RECEIVE, ["ReceiveOrder.AFrameRollsOverWhileRxb0IsRead",
                   "ReceiveOrder.EveryInterleavingWhilePolling",
                   "ReceiveOrder.EveryInterleavingWithAnInterruptLine"]),
     "rxb0_is_older_when_rxb1_was_freed": (
         "forget that RXB1 was older once it has been read",
-        "rx1_is_older_ = first ? quick_ & QuickStatus::rx1 : 0;",
-        "rx1_is_older_ = quick_ & QuickStatus::rx1;",
+        "    if (first) {\n      status_ |= QuickStatus::rx1;",
+        "    if (true) {\n      status_ |= QuickStatus::rx1;",
         RECEIVE, ["ReceiveOrder.EveryInterleavingWhilePolling",
                   "ReceiveOrder.EveryInterleavingWithAQueue"]),
     "rxb0_first_when_both_were_found_full": (
         "read RXB0 before RXB1 when both were filled unseen",
-        "read_rx_buffer((quick_ & QuickStatus::rx0) != 0 && !rx1_is_older_, frame)",
-        "read_rx_buffer((quick_ & QuickStatus::rx1) == 0, frame)",
+        "read_rx_buffer((status_ & QuickStatus::rx0) != 0, frame)",
+        "read_rx_buffer((status_ & QuickStatus::rx1) == 0, frame)",
         RECEIVE, ["ReceiveOrder.ReadsRxb0FirstWhenBothWereFilledUnseen",
                   "ReceiveOrder.EveryInterleavingWhilePolling"]),
     "older_rxb1_before_rxb0": (
         "read RXB1 first when it is the older one",
-        "read_rx_buffer((quick_ & QuickStatus::rx0) != 0 && !rx1_is_older_, frame)",
-        "read_rx_buffer((quick_ & QuickStatus::rx0) != 0, frame)",
+        "    quick &= static_cast<uint8_t>(~QuickStatus::rx0);  // newer",
+        "    // newer",
         RECEIVE, ["ReceiveOrder.AFrameRollsOverWhileRxb0IsRead",
                   "ReceiveOrder.EveryInterleavingWithAQueue"]),
     "look_right_after": (
         "look at the status right after a buffer was freed, with nothing in between",
-        "    transaction.restart();\n    looks =",
-        "    for (int i = 0; i < 30; ++i) {\n      transaction.restart();\n    }\n    looks =",
+        "    transaction.release();\n    looks =",
+        "    for (int i = 0; i < 30; ++i) {\n      transaction.release();\n"
+        "      transaction.restart(static_cast<uint8_t>(Instruction::read_status));\n    }\n"
+        "    transaction.release();\n    looks =",
         RECEIVE, ["ReceiveOrder.EveryInterleavingWhilePolling"]),
     "a_line_that_is_low_is_no_frame_yet": (
         "read the status before it believes the interrupt line",
-        "    look();\n    looked = true;\n  }\n  return quick_",
-        "    if (Port::has_interrupt_line) {\n      quick_ = QuickStatus::rx0;\n    } else {\n"
-        "      look();\n    }\n    looked = true;\n  }\n  return quick_",
+        "    look();\n    return true;",
+        "    if (Port::has_interrupt_line) {\n      status_ |= QuickStatus::rx0;\n    } else {\n      look();\n    }\n"
+        "    return true;",
         RECEIVE, ["ReceiveOrder.AnInterruptLineThatIsStuckLowIsNoFrame"]),
     "a_line_that_rises_early_tells_of_a_lost_chip": (
         "look at the interrupt line before it trusts what it read",
-        "    called = polls || port_.interrupt_line_is_low();",
+        "    called = polls || port().interrupt_line_is_low();",
         "    called = true;",
         OTHER, ["ChipLoss.AFrameReadFromAChipThatWasResetIsDiscarded"]),
     "a_line_that_is_off_throws_no_frame_away": (
         "hand out a frame of a chip that answers, whatever the interrupt line says",
-        "  if (!running_) {\n    count(counters_.discarded);",
-        "  if (!running_ || !called) {\n    count(counters_.discarded);",
+        "    if (!take_in(quick)) {\n      lose_chip();\n      count(counters_.discarded);",
+        "    if (!take_in(quick) || !called) {\n      lose_chip();\n      count(counters_.discarded);",
         LINE, ["InterruptLineOff.FromSomeTimeOn/NotConnected",
                "InterruptLine.ComesOffWhileAFrameIsRead", "InterruptLine.ThatIsLooseLosesNothing"]),
     "a_line_that_is_off_is_left_alone": (
         "poll once it has found the interrupt line off",
-        "  requests_.set_on(false);",
+        "  line().set_on(false);",
         "",
         LINE, ["InterruptLineOff.FromSomeTimeOn/NotConnected", "InterruptLine.ThatIsLooseLosesNothing"]),
     "a_lost_chip_is_no_line_that_is_off": (
         "look whether it is the chip before it blames the interrupt line",
-        "    if (!called && running_) {",
-        "    if (!called) {",
+        "    if (!take_in(quick)) {\n      lose_chip();",
+        "    if (!take_in(quick)) {\n      lose_chip();\n      if (!called) {\n        lose_line();\n      }",
         LINE, ["InterruptLine.IsNotBlamedForALostChip"]),
     "the_line_is_tried_at_the_beginning": (
         "see the interrupt line follow the chip in begin()",
-        "    requests_.set_on(falls && rises);",
-        "    requests_.set_on(true);",
+        "    line().set_on(falls && rises);",
+        "    line().set_on(true);",
         LINE, ["InterruptLineOff.FromTheBeginning/NotConnected",
                "InterruptLineOff.FromTheBeginning/StuckLow"]),
     "the_line_is_let_go_of": (
@@ -118,23 +120,23 @@ MUTATIONS = {
         LINE, ["InterruptLineOff.FromTheBeginning/NotConnected"]),
     "an_idle_look_that_went_wrong_is_repeated": (
         "look again when an idle look was nonsense",
-        "    if (--tries == 0) {",
-        "    if (true) {",
+        "  for (uint8_t tries = 2; tries != 0; --tries) {",
+        "  for (uint8_t tries = 1; tries != 0; --tries) {",
         RECEIVE, ["ReceiveOrder.ASpikeInAnIdleLookIsForgiven"]),
     "the_look_after_a_read_is_not_repeated": (
         "take the look right after a read for the only one",
-        "    note(quick, 1);",
-        "    note(quick, 2);",
+        "    if (!take_in(quick)) {\n      lose_chip();",
+        "    if (!take_in(quick) && !take_in(read_quick_status())) {\n      lose_chip();",
         RECEIVE, ["ReceiveOrder.IsNotGuessedAfterALookThatWentWrong"]),
     "all_ones_want_a_second_opinion": (
         "tell a line stuck at 1 from a chip that is busy with everything",
-        "      (read_register(Register::canstat) & Control::mode_mask) == Control::mode_mask) {",
+        "      (read_register(Register::canstat) & no_mode) == no_mode) {",
         "      false) {",
         OTHER, ["ChipLoss.ALineStuckHighIsNotTakenForAllBuffersInUse"]),
     "nothing_is_cleared_that_was_not_read": (
         "leave the chip's receive flags alone",
-        "    check_soon();\n  }\n  return true;",
-        "    check_soon();\n  }\n  modify_register(Register::canintf, first ? 1 : 2, 0);\n"
+        "      check_soon();\n    }\n  }\n  return true;",
+        "      check_soon();\n    }\n  }\n  modify_register(Register::canintf, first ? 1 : 2, 0);\n"
         "  return true;",
         RECEIVE, ["ReceiveOrder.EveryInterleavingWhilePolling"]),
     "the_second_frame_goes_behind_the_first": (
@@ -155,12 +157,12 @@ MUTATIONS = {
         TRANSMIT, ["TransmitOrderOf/TwoPlaces.UrgentFramesKeepTheirOrderAmongThemselves"]),
     "urgent_frames_keep_their_order_in_the_queue": (
         "queue an urgent frame behind the urgent ones",
-        "      if (is_urgent(tx_queue_[ahead].frame)) {\n        break;\n      }\n",
+        "      if (is_urgent(tx_queue()[ahead].frame)) {\n        break;\n      }\n",
         "",
         TRANSMIT, ["TransmitOrderOf/TwoPlaces.UrgentFramesKeepTheirOrderAmongThemselves"]),
     "a_frame_waits_behind_the_queue": (
         "let a frame wait while others of its priority are in the queue",
-        "tx_queue_.empty() || (is_urgent(frame) && !is_urgent(tx_queue_.front().frame));",
+        "tx_queue().empty() || (is_urgent(frame) && !is_urgent(tx_queue().front().frame));",
         "true;",
         TRANSMIT, ["All/TransmitTrouble.EachFrameIsSentOnceAndReportedTruly/none"]),
     "a_pending_buffer_is_left_alone": (
@@ -180,7 +182,7 @@ MUTATIONS = {
         TRANSMIT, ["All/BackToBackTrouble.EachFrameIsSentOnceAndReportedTruly/contention"]),
     "what_became_of_it_is_read": (
         "read what became of a frame when it was taken back",
-        "  return requests_.aborting() || (control_ & mcp2515::Control::one_shot) != 0;",
+        "  return requests().aborting() || (control_ & mcp2515::Control::one_shot) != 0;",
         "  return false;",
         TRANSMIT, ["Abort.TakesBackWhatHasNotBegun",
                    "All/TransmitTrouble.EachFrameIsSentOnceAndReportedTruly/aborts"]),
@@ -196,7 +198,7 @@ MUTATIONS = {
         OTHER, ["Receive.RemoteAndStandardFramesAreCountedAndDropped"]),
     "overflows_are_looked_for": (
         "look for an overflow after both buffers were full",
-        "    check_soon();",
+        "      check_soon();",
         "",
         OTHER, ["Overflow.EachLossThatIsServedInBetweenIsCounted"]),
     "overflow_flags_are_cleared": (
@@ -206,38 +208,38 @@ MUTATIONS = {
         OTHER, ["Overflow.IsToldHoweverTheChipFlagsIt"]),
     "the_state_of_the_bus_is_looked_at": (
         "look at the chip every so many calls",
-        "calls_ >= mcp2515::calls_between_checks && (quick_ == 0",
-        "false && (quick_ == 0",
+        "calls_ >= mcp2515::calls_between_checks &&",
+        "false &&",
         OTHER, ["BusState.IsToldWhilePolling", "ChipLoss.ASilentLineIsNotBelievedForEver"]),
     "a_reset_shows_in_the_status": (
         "expect its own flags in each status",
-        "pending_))) == QuickStatus::txif;",
-        "pending_))) != 1;",
+        "(~may_be)) == QuickStatus::txif;",
+        "(~may_be)) != 1;",
         OTHER, ["ChipLoss.AResetIsNoticedWhilePolling",
                 "ChipLoss.AFrameReadFromACableThatFellOffIsDiscarded"]),
     "what_was_written_is_read_back": (
         "read back what it wrote",
-        "  right = right && exchange_setup(config) == 0;",
-        "  exchange_setup(config);",
+        "      return differences == 0;",
+        "      return true;",
         BEGIN, ["Begin.NoticesAWriteThatDidNotArrive"]),
     "the_oscillator_is_waited_for": (
         "wait for a chip that starts slowly",
-        "  } while (--pauses != 0);",
-        "  } while (false);",
+        "  for (uint8_t left = mcp2515::pauses; left != 0; --left) {\n    if (!enters(control)) {",
+        "  for (uint8_t left = 1; left != 0; --left) {\n    if (!enters(control)) {",
         BEGIN, ["Begin.WaitsForAChipThatStartsSlowly"]),
     "the_mode_is_confirmed": (
         "see the chip enter its mode",
-        "    if (((read_register(Register::canstat) ^ control) & Control::mode_mask) == 0) {",
-        "    if (true) {",
+        "  return ((read_register(Register::canstat) ^ control) & Control::mode_mask) == 0;",
+        "  return true;",
         BEGIN, ["Begin.OnABusThatIsNeverIdleSaysSoInTime"]),
     "what_rested_is_asked_what_it_knows": (
         "see whether a chip that rested still knows what it was told",
-        "  look();\n  if (!running_) {\n    control_ = 0;",
-        "  if (!running_) {\n    control_ = 0;",
+        "  look();\n  if (!running()) {\n    control_ = 0;",
+        "  if (!running()) {\n    control_ = 0;",
         MODE, ["Rest.WithoutPowerTheChipForgetsAndThatIsTold/InConfigurationMode"]),
     "it_rests_when_all_is_sent": (
         "send all before the chip rests",
-        "(pending_ != 0 || !tx_queue_.empty())",
+        "(requested() != 0 || !tx_queue().empty())",
         "false",
         MODE, ["Rest.ComesWhenAllIsSent/Asleep", "Rest.ComesWhenAllIsSent/InConfigurationMode"]),
     "the_bus_may_wake_it": (

@@ -47,6 +47,7 @@ TEST_F(LocalEvents, AStoppedCarrierIsToldWhileFramesWaitForIt) {
   expect_no_events(*bus);
 
   carrier.signal(SIGSTOP);
+  await_state(*bus, BusState::down);  // it stops a moment later, and might take the frame before
   ASSERT_EQ(bus->send(some_frame(), no_wait), Result::ok);
   EXPECT_EQ(next_events(*bus), (Events{.state = true}));
   EXPECT_EQ(bus->state(), BusState::down);

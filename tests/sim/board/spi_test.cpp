@@ -45,15 +45,41 @@ TEST_P(BoardSpi, Flags) {
   BoardRig rig(bus_, GetParam(), "spi_times");
   bus_.run_for(50ms);
   const std::vector<int> words = rig.words();
-  ASSERT_EQ(words.size(), 27U);
+  ASSERT_EQ(words.size(), 29U);
   EXPECT_EQ(words[21], 0xC0) << "WCOL and SPIF";
   EXPECT_EQ(words[22], 0x00) << "both cleared by reading SPSR, then SPDR";
   EXPECT_EQ(words[23], 0x80) << "SPDR alone does not clear SPIF";
   EXPECT_EQ(words[24], 0x00);
   EXPECT_EQ(words[25], 1) << "one interrupt";
   EXPECT_EQ(words[26], 0x00) << "which clears SPIF";
-  ASSERT_EQ(rig.board.violations().size(), 1U);
+  ASSERT_GE(rig.board.violations().size(), 1U);
   EXPECT_EQ(rig.board.violations()[0].what, "SPDR written while a byte is under way");
+}
+
+// Ardens pull request 134, measured on an ATmega32U4: cycles from instruction to instruction.
+TEST_P(BoardSpi, AByteWrittenOrReadTooEarlyIsWhatItIsOnSilicon) {
+  BoardRig rig(bus_, GetParam(), "spi_times");
+  Bytes out;
+  rig.board.on_spi([&](sim::SimTime, std::uint8_t byte, std::uint8_t) { out.push_back(byte); });
+  bus_.run_for(50ms);
+  const auto begin = std::find(out.begin(), out.end(), 0xA0);
+  ASSERT_NE(begin, out.end());
+  const Bytes expected{0xA0,
+                       0xA1,        // 16 cycles: the second is lost, and WCOL tells
+                       0xA1, 0x00,  // 17: it goes out, as something else
+                       0xA1, 0xA2,  // 18
+                       0xA3, 0xA4, 0xA3, 0xA4};
+  EXPECT_EQ(Bytes(begin, out.end()), expected);
+  std::vector<std::pair<std::string, std::uint64_t>> violations;
+  for (const auto& violation : rig.board.violations()) {
+    violations.emplace_back(violation.what, violation.times);
+  }
+  // Of those written while a byte is under way, one is Flags'.
+  EXPECT_EQ(violations, (std::vector<std::pair<std::string, std::uint64_t>>{
+                            {"SPDR written while a byte is under way", 2},
+                            {"SPDR written in the cycle after a byte: 0 goes out", 1},
+                            {"SPDR read before the byte is there", 1}}))
+      << "read after 16 cycles; after 17 it is there";
 }
 
 // 8 MHz, and the loop of firmware/board.hpp between two bytes: what a chip sees is 16 cycles of

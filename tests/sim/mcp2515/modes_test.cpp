@@ -359,32 +359,5 @@ TEST(Mcp2515Modes, LoopbackDoesNotHearTheBus) {
   EXPECT_EQ(rig.read(0x2C), 0x00);
 }
 
-// --- listen-only mode (10.3) ---------------------------------------------------------------------
-
-TEST(Mcp2515Modes, ListenOnlyReceivesAndDrivesNothing) {
-  ChipRig rig;
-  rig.go(0x60);
-  rig.peer.send({0x123, FrameKind::standard, 1, {0x42}});
-  rig.run_bits(500);
-  EXPECT_EQ(rig.peer.waiting(), 1U) << "nobody acknowledges";
-  EXPECT_EQ(rig.read(0x1D), 0);
-  EXPECT_EQ(rig.read(0x2C), 0x80) << "errors are seen: MERRF";
-  sim::HostNode witness(rig.bus, ChipRig::rate);
-  rig.run_bits(500);
-  EXPECT_EQ(rig.peer.waiting(), 0U);
-  EXPECT_EQ(rig.read(0x2C), 0x81);
-  EXPECT_EQ(rig.read(0x66), 0x42);
-}
-
-TEST(Mcp2515Modes, ListenOnlyOverwritesNoBuffer) {
-  ChipRig rig;
-  sim::HostNode witness(rig.bus, ChipRig::rate);
-  rig.go(0x60);
-  rig.peer_sends({0x123, FrameKind::standard, 1, {1}});
-  rig.peer_sends({0x123, FrameKind::standard, 1, {2}});
-  EXPECT_EQ(rig.read(0x66), 1);
-  EXPECT_EQ(rig.read(0x2D), 0x40);
-}
-
 }  // namespace
 }  // namespace roio::test

@@ -222,14 +222,14 @@ TEST(SpiWire, ThePortIsTheDriversViewOfIt) {
   WireRig rig;
   sim::ChipPort<true> port(rig.wire);
   {
-    sim::ChipPort<true>::Transaction transaction(port);
+    sim::ChipPort<true>::Transaction transaction(port, 0x02);
     EXPECT_TRUE(rig.wire.selected());
-    transaction.exchange(0x02);
-    transaction.exchange(0x2B);
-    transaction.exchange(0x1F);
-    transaction.restart();
-    transaction.exchange(0x03);
-    transaction.exchange(0x2B);
+    transaction.put(0x2B);
+    transaction.put(0x1F);
+    transaction.release();
+    EXPECT_FALSE(rig.wire.selected());
+    transaction.restart(0x03);
+    transaction.put(0x2B);
     EXPECT_EQ(transaction.exchange(0x00), 0x1F);
   }
   EXPECT_FALSE(rig.wire.selected());

@@ -33,7 +33,7 @@ RoioOn<10> roio;  // CS
 uint8_t count = 0;
 
 Roio::Status begin() {
-  return roio.begin(Roio::bitTiming<crystal, bitrate>(), own);
+  return roio.begin<crystal, bitrate>(own);
 }
 
 void print(Roio::Address address) {

@@ -93,7 +93,7 @@ bool tell() {
 }
 
 bool begin() {
-  return roio.begin(Roio::bitTiming<crystal, bitrate>(), own) == Roio::Status::ok;
+  return roio.begin<crystal, bitrate>(own) == Roio::Status::ok;
 }
 
 void setup() {

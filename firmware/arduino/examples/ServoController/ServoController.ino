@@ -74,7 +74,7 @@ void setup() {
 
 void loop() {
   // First of all, and again when the chip was without power.
-  if (!roio.running() && roio.begin(Roio::bitTiming<crystal, bitrate>(), own) != Roio::Status::ok) {
+  if (!roio.running() && roio.begin<crystal, bitrate>(own) != Roio::Status::ok) {
     return;
   }
   Roio::Message message;

@@ -4,6 +4,7 @@
 
 #include <roio/arduino_message.hpp>
 #include <roio/arduino_port.hpp>
+#include <roio/arduino_setup.hpp>
 #include <roio/mcp2515.hpp>
 
 namespace roio {
@@ -78,7 +79,12 @@ class ArduinoNode {
   template <uint32_t OscHz, uint32_t BitrateBps>
   ROIO_IN_LINE Status begin(Address own, Mode mode = Mode::normal) {
     constexpr uint32_t cnf = mcp2515::Cnf::word(bit_timing<OscHz, BitrateBps>());
-    return begin_plain(cnf, own, mode);
+    if (!is_valid_source(own) || mcp2515::is_rest(mode)) {
+      return Status::bad_argument;
+    }
+    take_address(own);
+    return driver_.start(
+        PlainSetup<cnf>(mcp2515_filters_of(own), mcp2515::Control::of(mode, false)));
   }
   /// With a bit timing of one's own.
   /// @return ok; bad_argument: no valid address (subnet 0..31, node 0..254), or a mode that rests;
@@ -97,7 +103,7 @@ class ArduinoNode {
   }
   static Filters everything() { return mcp2515_filters_of_everything(); }
   /// The filters for an Interest. When `exact` is false the chip lets through more than was asked
-  /// for.
+  /// for; in Mode::listen_only it lets everything through, whatever the filters are.
   /// @param filters written on ok only.
   /// @return ok; bad_argument: its own address is none; full: more than 8 rules.
   ROIO_NODISCARD static Status filtersOf(const Interest& interest, Filters& filters) {
@@ -156,7 +162,7 @@ class ArduinoNode {
 
   /// Whether the chip is at work; if not, begin() again.
   bool running() const { return driver_.running(); }
-  const Counters& counters() const { return driver_.counters(); }
+  ROIO_IN_LINE Counters counters() const { return driver_.counters(); }
   /// How many messages are in the receive queue.
   uint8_t fetched() const { return driver_.fetched(); }
   /// How many messages wait in the send queue, and in the chip.

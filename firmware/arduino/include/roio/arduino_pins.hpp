@@ -8,8 +8,11 @@
 #include <Arduino.h>
 #include <SPI.h>
 
-#define ROIO_OUT_OF_LINE
-#define ROIO_IN_LINE
+#include <roio/arduino_spi.hpp>
+
+#define ROIO_OUT_OF_LINE __attribute__((noinline))
+/// What a compiler sees through only where it stands.
+#define ROIO_IN_LINE inline __attribute__((always_inline))
 
 namespace roio {
 
@@ -49,17 +52,6 @@ class SetPin {
 inline void begin_spi() {
   SPI.begin();
 }
-inline void send_block(const uint8_t* bytes, uint8_t count) {
-  while (count-- != 0) {
-    SPI.transfer(*bytes++);
-  }
-}
-inline void receive_block(uint8_t* bytes, uint8_t count) {
-  while (count-- != 0) {
-    *bytes++ = SPI.transfer(0);
-  }
-}
-
 /// Interrupts are off while one lives, and on again after it if they were on before, where the core
 /// can tell.
 class InterruptsOff {

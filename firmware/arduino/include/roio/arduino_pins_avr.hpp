@@ -8,6 +8,13 @@
 
 #include <roio/arduino_pin_map_avr.hpp>
 
+// The SPI library sets half the clock for the 10 MHz of arduino_port.hpp up to here.
+#if F_CPU <= 20000000
+#include <roio/arduino_spi_avr.hpp>
+#else
+#include <roio/arduino_spi.hpp>
+#endif
+
 /// The linker's optimiser would copy these into every caller otherwise.
 #define ROIO_OUT_OF_LINE __attribute__((noinline))
 /// And would leave these out of line.
@@ -135,41 +142,6 @@ inline void begin_spi() {
 #else
   SPI.begin();
 #endif
-}
-
-// What can be done while a byte is under way is done then: at 8 MHz one takes 16 cycles, and these
-// take some 21 each. SPI.transfer() of a buffer takes 60 bytes of flash and overwrites what it
-// sends.
-
-ROIO_IN_LINE void wait_for_spi() {
-  while ((SPSR & (1U << SPIF)) == 0) {
-  }
-}
-
-/// @param count 1 or more.
-ROIO_IN_LINE void send_block(const uint8_t* bytes, uint8_t count) {
-  uint8_t next = *bytes;
-  for (;;) {
-    SPDR = next;
-    if (--count == 0) {
-      break;
-    }
-    next = *++bytes;
-    wait_for_spi();
-  }
-  wait_for_spi();
-}
-
-ROIO_IN_LINE void receive_block(uint8_t* bytes, uint8_t count) {
-  SPDR = 0;
-  while (--count != 0) {
-    wait_for_spi();
-    const uint8_t answer = SPDR;
-    SPDR = answer;
-    *bytes++ = answer;
-  }
-  wait_for_spi();
-  *bytes = SPDR;
 }
 
 }  // namespace roio

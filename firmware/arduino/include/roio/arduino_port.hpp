@@ -67,21 +67,58 @@ class ArduinoPort {
 
   class Transaction {
    public:
-    ROIO_IN_LINE explicit Transaction(ArduinoPort& port) : port_(port) { port_.select(); }
-    ROIO_IN_LINE ~Transaction() { port_.deselect(); }
+    ROIO_IN_LINE Transaction(ArduinoPort& port, uint8_t first)
+        : port_(port), is_selected_(true), is_sending_(true) {
+      port_.select(first);
+    }
+    ROIO_IN_LINE ~Transaction() {
+      if (is_selected_) {
+        release();
+      }
+      SPI.endTransaction();
+    }
     Transaction(const Transaction&) = delete;
     Transaction& operator=(const Transaction&) = delete;
 
-    ROIO_IN_LINE uint8_t exchange(uint8_t out) { return transfer(out); }
-    ROIO_IN_LINE void send(const uint8_t* bytes, uint8_t count) { put(bytes, count); }
-    ROIO_IN_LINE void receive(uint8_t* bytes, uint8_t count) { get(bytes, count); }
-    ROIO_IN_LINE void restart() {
+    ROIO_IN_LINE void put(uint8_t byte) {
+      spi_put(byte);
+      is_sending_ = true;
+    }
+    ROIO_IN_LINE void send(const uint8_t* bytes, uint8_t count) {
+      spi_send(bytes, count);
+      is_sending_ = true;
+    }
+    ROIO_IN_LINE uint8_t exchange(uint8_t byte) {
+      is_sending_ = false;
+      return spi_exchange(byte);
+    }
+    ROIO_IN_LINE void receive(uint8_t* bytes, uint8_t count) {
+      if (is_sending_) {
+        spi_receive(bytes, count);
+      } else {
+        spi_receive_more(bytes, count);
+      }
+      is_sending_ = false;
+    }
+    ROIO_IN_LINE void release() {
+      if (is_sending_) {
+        spi_finish();
+        is_sending_ = false;
+      }
       port_.chip_select_.set_high();
-      port_.chip_select_.set_low();
+      is_selected_ = false;
+    }
+    ROIO_IN_LINE void restart(uint8_t first) {
+      port_.start(first);
+      is_selected_ = true;
+      is_sending_ = true;
     }
 
    private:
     ArduinoPort& port_;
+    // Known to the compiler at each place: they cost nothing.
+    bool is_selected_;
+    bool is_sending_;
   };
 
   class Uninterrupted : InterruptsOff {
@@ -90,20 +127,16 @@ class ArduinoPort {
   };
 
  private:
-  // Out of line: they are called from everywhere.
-  ROIO_OUT_OF_LINE void select() {
+  // Out of line: they are called from everywhere, and spi_start() of an AVR wants it.
+  ROIO_OUT_OF_LINE void select(uint8_t first) {
     SPI.beginTransaction(SPISettings(spi_hz, MSBFIRST, SPI_MODE0));
     chip_select_.set_low();
+    spi_start(first);
   }
-  ROIO_IN_LINE void deselect() {
-    chip_select_.set_high();
-    SPI.endTransaction();
+  ROIO_OUT_OF_LINE void start(uint8_t first) {
+    chip_select_.set_low();
+    spi_start(first);
   }
-  ROIO_OUT_OF_LINE static uint8_t transfer(uint8_t out) { return SPI.transfer(out); }
-  ROIO_OUT_OF_LINE static void put(const uint8_t* bytes, uint8_t count) {
-    send_block(bytes, count);
-  }
-  ROIO_OUT_OF_LINE static void get(uint8_t* bytes, uint8_t count) { receive_block(bytes, count); }
 
   ChipSelect chip_select_;
 };

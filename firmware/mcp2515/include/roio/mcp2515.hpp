@@ -37,6 +37,7 @@
 #include <roio/filter_mcp2515.hpp>
 #include <roio/frame.hpp>
 #include <roio/header.hpp>
+#include <roio/mcp2515_config.hpp>
 #include <roio/mcp2515_frame.hpp>
 #include <roio/mcp2515_line.hpp>
 #include <roio/mcp2515_order.hpp>
@@ -63,13 +64,15 @@ namespace roio {
 //     bool interrupt_line_is_low();
 //     void pause(uint16_t microseconds);  // that long at least, also with interrupts off
 //     uint32_t microseconds();  // free running, wraps at 2^32; for check_clock() alone
-//     class Transaction {       // chip select is low as long as one lives
+//     class Transaction {       // chip select is low as long as one lives, or until release()
 //      public:
-//       explicit Transaction(PortExample&);
-//       uint8_t exchange(uint8_t out);
+//       Transaction(PortExample&, uint8_t first);        // the first byte to be sent
+//       void put(uint8_t byte);                          // sends one
 //       void send(const uint8_t* bytes, uint8_t count);  // 1 or more
+//       uint8_t exchange(uint8_t byte);                  // the same, and receives one
 //       void receive(uint8_t* bytes, uint8_t count);     // 1 or more
-//       void restart();         // chip select high, then low again
+//       void release();                // chip select high, early
+//       void restart(uint8_t first);   // after that: low again, and a first byte
 //       ~Transaction();
 //     };
 //     class Uninterrupted {     // while one lives, nothing else runs: interrupts are off
@@ -80,49 +83,6 @@ namespace roio {
 //   };
 //
 // SPI mode 0,0 at 10 MHz at most (mode 1,1 would send a frame twice, errata item 5).
-
-/// What begin() makes of the chip, in the chip's own bytes: a configuration that is known when
-/// compiling costs these and no more.
-class Mcp2515Config {
- public:
-  /// @param one_shot each frame is tried once, then reported as failed. Needs
-  ///        Traits::reports_outcomes.
-  Mcp2515Config(const BitTiming& timing, const Mcp2515FilterPair& filters,
-                mcp2515::Mode mode = mcp2515::Mode::normal, bool one_shot = false)
-      : Mcp2515Config(mcp2515::Cnf::word(timing), filters.mask, filters.filter[0],
-                      filters.filter[1], mcp2515::Control::of(mode, one_shot)) {}
-
-  /// The same from its parts, which a compiler sees through.
-  /// @param cnf Cnf::word(). @param control Control::of().
-  __attribute__((always_inline))
-  Mcp2515Config(uint32_t cnf, uint32_t mask, uint32_t first, uint32_t second, uint8_t control)
-      : bytes_{mcp2515_register(first, 0),      mcp2515_register(first, 1),
-               mcp2515_register(first, 2),      mcp2515_register(first, 3),
-               mcp2515_register(second, 0),     mcp2515_register(second, 1),
-               mcp2515_register(second, 2),     mcp2515_register(second, 3),
-               mcp2515_register(mask, 0),       mcp2515_register(mask, 1),
-               mcp2515_register(mask, 2),       mcp2515_register(mask, 3),
-               static_cast<uint8_t>(cnf),       static_cast<uint8_t>(cnf >> 8),
-               static_cast<uint8_t>(cnf >> 16), 0},
-        control_(control) {}
-
-  bool timing_is_valid() const { return bytes_[13] != 0; }
-  /// CANCTRL.
-  uint8_t control() const { return control_; }
-  /// Of the oscillator: 10..3200.
-  uint16_t clocks_per_bit() const { return mcp2515::Cnf::clocks_per_bit(bytes_ + 12); }
-  /// What the registers 00h..0Bh, 10h..1Bh and 20h..2Bh have to be: three filters, three filters,
-  /// two masks and CNF3, CNF2, CNF1, CANINTE (0 at first). RXB1 has the filters of RXB0, so that
-  /// what goes there went past RXB0 while it was full.
-  uint8_t operator[](uint8_t address) const {
-    const uint8_t place = (address & 0x20U) == 0 ? address & 7U : 8U | ((address >> 1) & 4U);
-    return bytes_[place | (address & 3U)];
-  }
-
- private:
-  uint8_t bytes_[16];
-  uint8_t control_;
-};
 
 /// What became of a frame that send() took.
 enum class TxOutcome : uint8_t {
@@ -200,19 +160,12 @@ class Mcp2515 {
 
   template <typename... Arguments>
   explicit constexpr Mcp2515(Arguments&&... arguments)
-      : port_(static_cast<Arguments&&>(arguments)...),
-        traits_(),
+      : parts_(static_cast<Arguments&&>(arguments)...),
         counters_(),
-        quick_(0),
+        status_(0),
         error_flags_(0),
         control_(0),
-        calls_(0),
-        running_(false),
-        rx1_is_older_(0),
-        pending_(0),
-        requests_(),
-        rx_queue_(),
-        tx_queue_() {}
+        calls_(0) {}
 
   Mcp2515(const Mcp2515&) = delete;
   Mcp2515& operator=(const Mcp2515&) = delete;
@@ -229,7 +182,9 @@ class Mcp2515 {
   ROIO_NODISCARD Status begin(const Mcp2515Config& config);
   /// The same, of a configuration that is known to be right: does not look for bad_timing and
   /// bad_argument.
-  ROIO_NODISCARD Status start(const Mcp2515Config& config);
+  /// @tparam Setup Mcp2515Config, or what has its operator[] and control().
+  template <typename Setup>
+  ROIO_NODISCARD Status start(const Setup& setup);
 
   /// Fetches what has come in (with RxQueue 0 that is receive()'s alone), hands over what waits,
   /// looks after errors. Bounded: at most RxQueue + 2 frames and a handful of registers.
@@ -257,11 +212,11 @@ class Mcp2515 {
   ROIO_NODISCARD Status send(const Mcp2515Frame& frame, uint8_t token = 0);
 
   /// Enters another mode. normal, listen_only and loopback: as soon as the bus is idle for 11 bits;
-  /// waits for it as begin() does. asleep and configuration: the chip leaves the bus and keeps its
-  /// setup; running() is false, and the calls above say no_chip, until change_mode() takes it up
-  /// again, or begin() starts it anew. Asleep it is woken by the next frame on the bus, which is
-  /// lost, and pulls its interrupt pin, or by change_mode(), which has to come in any case: woken
-  /// by the bus it only listens.
+  /// waits for it as begin() does. In listen_only the chip's filters do not hold (10.3).
+  /// asleep and configuration: the chip leaves the bus and keeps its setup; running() is false, and
+  /// the calls above say no_chip, until change_mode() takes it up again, or begin() starts it anew.
+  /// Asleep it is woken by the next frame on the bus, which is lost, and pulls its interrupt pin,
+  /// or by change_mode(), which has to come in any case: woken by the bus it only listens.
   /// @return ok; full: asleep or configuration, and a frame is still to be sent: poll(), try again;
   ///         no_chip; wrong_mode: not entered: begin() again.
   ROIO_NODISCARD Status change_mode(mcp2515::Mode mode);
@@ -282,12 +237,13 @@ class Mcp2515 {
 
   /// How many frames are in the chip to be sent, as far as was last seen.
   uint8_t in_flight() const {
-    return static_cast<uint8_t>(((pending_ >> 2) & 1U) + ((pending_ >> 4) & 1U) + (pending_ >> 6));
+    return static_cast<uint8_t>(((status_ >> 2) & 1U) + ((status_ >> 4) & 1U) +
+                                ((status_ >> 6) & 1U));
   }
   /// How many received frames receive() has without looking at the chip.
-  uint8_t fetched() const { return rx_queue_.size(); }
+  uint8_t fetched() const { return rx_queue().size(); }
   /// How many wait for the chip.
-  uint8_t waiting() const { return tx_queue_.size(); }
+  uint8_t waiting() const { return tx_queue().size(); }
 
   /// Reads the chip's error counters.
   void read_error_counters(uint8_t& transmit, uint8_t& receive);
@@ -303,9 +259,9 @@ class Mcp2515 {
   ROIO_NODISCARD Status check_clock(const Mcp2515Config& config, uint32_t osc_hz,
                                     uint32_t& measured_hz);
 
-  bool running() const { return running_; }
+  bool running() const { return (status_ & QuickStatus::tx0if) != 0; }
   /// Whether the interrupt line is there and, as far as is known, works; if not, the driver polls.
-  bool line_is_on() const { return requests_.is_on(); }
+  bool line_is_on() const { return parts_.is_on(); }
   /// As last seen; active for ever without Traits::diagnoses.
   Mcp2515State state() const { return state_of(error_flags_); }
   /// As it is now: one register is read.
@@ -317,15 +273,31 @@ class Mcp2515 {
   void show_full_buffers(bool shows) {
     write_register(Register::bfpctrl, shows ? mcp2515::pins_show_buffers : uint8_t{0});
   }
-  const Counters& counters() const { return counters_; }
-  Port& port() { return port_; }
-  Traits& traits() { return traits_; }
+  ROIO_MCP2515_IN_LINE Counters counters() const {
+    Counters counters = counters_;
+    if (!Traits::reports_outcomes) {
+      // Counted when the chip was given them; what has not ended otherwise has ended well.
+      counters.sent =
+          static_cast<typename Traits::Count>(counters.sent - counters.unknown - in_flight());
+    }
+    return counters;
+  }
+  Port& port() { return parts_; }
+  Traits& traits() { return parts_; }
 
  private:
   using Instruction = mcp2515::Instruction;
   using Register = mcp2515::Register;
   using QuickStatus = mcp2515::QuickStatus;
   using Transaction = typename Port::Transaction;
+  /// An access to the registers from one on.
+  struct RegisterAccess : Transaction {
+    ROIO_MCP2515_IN_LINE RegisterAccess(Port& port, Instruction instruction, Register address)
+        : Transaction(port, static_cast<uint8_t>(instruction)) {
+      this->put(static_cast<uint8_t>(address));
+    }
+    ROIO_MCP2515_IN_LINE ~RegisterAccess() {}
+  };
 
   using Waiting = mcp2515::Waiting<Traits::reports_outcomes>;
   static_assert(!(Traits::only_buffer_0 && Traits::back_to_back),
@@ -333,10 +305,22 @@ class Mcp2515 {
   using Order = mcp2515::TxOrder<Traits::only_buffer_0  ? mcp2515::TxPlaces::one
                                  : Traits::back_to_back ? mcp2515::TxPlaces::six
                                                         : mcp2515::TxPlaces::two>;
-  /// Bases, since most often these are empty.
-  struct Requests : mcp2515::Requests<Traits::reports_outcomes>,
-                    Order,
-                    mcp2515::Line<Port::has_interrupt_line, Traits::doubts_line> {};
+  using Requests = mcp2515::Requests<Traits::reports_outcomes>;
+  using Line = mcp2515::Line<Port::has_interrupt_line, Traits::doubts_line>;
+  using RxRing = mcp2515::Ring<Mcp2515Frame, RxQueue>;
+  using TxRing = mcp2515::Ring<Waiting, TxQueue>;
+  /// Bases, since most often these are empty: a member takes a byte even so.
+  struct Parts : Port, Traits, Requests, Order, Line, RxRing, TxRing {
+    template <typename... Arguments>
+    explicit constexpr Parts(Arguments&&... arguments)
+        : Port(static_cast<Arguments&&>(arguments)...),
+          Traits(),
+          Requests(),
+          Order(),
+          Line(),
+          RxRing(),
+          TxRing() {}
+  };
 
   static bool is_urgent(const Mcp2515Frame& frame) {
     return (frame.bytes[0] & mcp2515::priority_bit) == 0 &&
@@ -350,12 +334,15 @@ class Mcp2515 {
   static Mcp2515State state_of(uint8_t error_flags);
 
   // the chip's registers
-  void open(Transaction& transaction, Instruction instruction, Register address);
   uint8_t read_register(Register address);
   void write_register(Register address, uint8_t value);
   void modify_register(Register address, uint8_t mask, uint8_t value);
-  uint8_t read_quick_status();
-  uint8_t exchange_setup(const Mcp2515Config& config);
+  ROIO_MCP2515_IN_LINE uint8_t read_quick_status() {
+    Transaction transaction(port(), static_cast<uint8_t>(Instruction::read_status));
+    return transaction.exchange(0);
+  }
+  template <typename Setup>
+  bool exchange_setup(const Setup& setup);
 
   // changing modes
   bool await(mcp2515::Mode mode);
@@ -364,8 +351,10 @@ class Mcp2515 {
   void end_sleep();
 
   // starting
+  bool enters(uint8_t control);
   bool reach(uint8_t control);
-  bool configure(const Mcp2515Config& config);
+  template <typename Setup>
+  bool configure(const Setup& setup);
   bool reset_chip();
   void count_what_is_forgotten();
   void load_clock_frames();
@@ -373,31 +362,40 @@ class Mcp2515 {
 
   // what READ STATUS shows
   bool is_plausible(uint8_t quick);
-  void look();
-  ROIO_MCP2515_OUT_OF_LINE void note(uint8_t quick, uint8_t tries);
+  ROIO_MCP2515_OUT_OF_LINE void look();
+  ROIO_MCP2515_OUT_OF_LINE bool take_in(uint8_t quick);
+  ROIO_MCP2515_OUT_OF_LINE bool take_in_everything();
 
   // the interrupt line
+  Line& line() { return parts_; }
   void try_line();
   bool line_follows(bool low);
   void lose_line();
 
   // receiving
-  bool find_received(bool& looked);
+  RxRing& rx_queue() { return parts_; }
+  const RxRing& rx_queue() const { return parts_; }
+  uint8_t received() const { return status_ & QuickStatus::any_rx; }
+  bool look_for_frame();
   bool fetch(Mcp2515Frame& frame);
   bool read_rx_buffer(bool first, Mcp2515Frame& frame);
 
   // sending
+  uint8_t requested() const { return status_ & QuickStatus::any_txreq; }
   bool give_to_chip(const Mcp2515Frame& frame, uint8_t token);
   Status enqueue(const Mcp2515Frame& frame, uint8_t token);
   void pump();
   bool load(const Mcp2515Frame& frame, uint8_t token);
-  Order& order() { return requests_; }
-  void settle(uint8_t quick);
+  Requests& requests() { return parts_; }
+  Order& order() { return parts_; }
+  TxRing& tx_queue() { return parts_; }
+  const TxRing& tx_queue() const { return parts_; }
+  void settle(uint8_t ended);
   ROIO_MCP2515_OUT_OF_LINE void finish_abort();
-  bool may_end_otherwise() const;
+  bool may_end_otherwise();
   ROIO_MCP2515_OUT_OF_LINE void end_somehow(uint8_t buffer);
   TxOutcome outcome_of(uint8_t buffer);
-  void end(uint8_t requests, TxOutcome outcome);
+  void end(uint8_t ended, TxOutcome outcome);
   void report(uint8_t token, TxOutcome outcome);
   bool has_over_in_chip();
   ROIO_MCP2515_OUT_OF_LINE static void count(typename Traits::Count& counter) { ++counter; }
@@ -410,19 +408,15 @@ class Mcp2515 {
   void lose_chip();
   ROIO_MCP2515_OUT_OF_LINE void forget_chip();
 
-  Port port_;
-  Traits traits_;
+  Parts parts_;
   Counters counters_;
-  uint8_t quick_;        // receive flags that READ STATUS last showed, less what was read since
+  /// READ STATUS as it last was, less what was read since. TXnIF: the chip is at work, else 0.
+  /// TXREQ: what the chip was asked to send. RXB1 alone: it has the older frame, whether RXB0 is
+  /// full or not.
+  uint8_t status_;
   uint8_t error_flags_;  // EFLG when last looked at
   uint8_t control_;      // what CANCTRL must be
   uint8_t calls_;        // since the chip was last checked, and more when that should be soon
-  bool running_;
-  uint8_t rx1_is_older_;  // of two full receive buffers, when not 0
-  uint8_t pending_;       // what the chip was asked to send, bit for bit TXREQ in READ STATUS
-  Requests requests_;
-  mcp2515::Ring<Mcp2515Frame, RxQueue> rx_queue_;
-  mcp2515::Ring<Waiting, TxQueue> tx_queue_;
 };
 
 }  // namespace roio
@@ -430,6 +424,11 @@ class Mcp2515 {
 /// A member function of the driver, without its template arguments each time.
 #define ROIO_MCP2515_MEMBER(Type)                                             \
   template <typename Port, uint8_t RxQueue, uint8_t TxQueue, typename Traits> \
+  Type Mcp2515<Port, RxQueue, TxQueue, Traits>
+/// And one that has one of its own.
+#define ROIO_MCP2515_MEMBER_OF(Argument, Type)                                \
+  template <typename Port, uint8_t RxQueue, uint8_t TxQueue, typename Traits> \
+  template <typename Argument>                                                \
   Type Mcp2515<Port, RxQueue, TxQueue, Traits>
 
 #include <roio/mcp2515_mode.hpp>

@@ -42,8 +42,11 @@ struct Mcp2515Frame {
   uint8_t length() const { return bytes[4] & length_mask; }
   /// A DLC of 9 to 15 means 8 (ISO 11898-1), and what bits 5 and 4 hold is nobody's business.
   void limit_length() {
-    const uint8_t limited = length() <= max_data_length ? length() : max_data_length;
-    bytes[4] = static_cast<uint8_t>((bytes[4] & remote_bit) | limited);
+    uint8_t dlc = bytes[4] & (remote_bit | length_mask);
+    if ((dlc & max_data_length) != 0) {
+      dlc &= remote_bit | max_data_length;
+    }
+    bytes[4] = dlc;
   }
 };
 
@@ -110,8 +113,10 @@ inline bool is_message(const Mcp2515Frame& frame) {
 /// can_be_sent() refuses it.
 inline void put_destination(Address destination, Mcp2515Frame& frame) {
   const uint8_t subnet = destination.subnet <= max_subnet ? destination.subnet : class_bits;
-  uint8_t middle = destination.node;
-  middle >>= 3;  // by itself, or an AVR shifts 16 bits one by one
+  // Three times by itself, or an AVR shifts 16 bits in a loop.
+  uint8_t middle = destination.node / 2U;
+  middle /= 2U;
+  middle /= 2U;
   frame.bytes[0] = static_cast<uint8_t>((frame.bytes[0] & priority_bit) | subnet);
   frame.bytes[1] =
       static_cast<uint8_t>((destination.node & 0xE0U) | Mcp2515Frame::extended_bit | (middle & 3U));

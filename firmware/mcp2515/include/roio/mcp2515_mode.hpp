@@ -16,19 +16,19 @@ ROIO_MCP2515_MEMBER(Status)::change_mode(mcp2515::Mode mode) {
   using mcp2515::Control;
   using mcp2515::Mode;
   const Mode before = Control::mode_of(control_);
-  if (!running_ && !mcp2515::is_rest(before)) {
+  if (!running() && !mcp2515::is_rest(before)) {
     return Status::no_chip;
   }
-  running_ = true;  // unless it has forgotten meanwhile what begin() told it
+  status_ |= QuickStatus::txif;  // unless it has forgotten meanwhile what begin() told it
   if (before == Mode::asleep) {
     end_sleep();
   }
   look();
-  if (!running_) {
+  if (!running()) {
     control_ = 0;
     return Status::no_chip;
   }
-  if (mcp2515::is_rest(mode) && (pending_ != 0 || !tx_queue_.empty())) {
+  if (mcp2515::is_rest(mode) && (requested() != 0 || !tx_queue().empty())) {
     return Status::full;
   }
   const uint8_t control = Control::with_mode(control_, mode);
@@ -41,14 +41,16 @@ ROIO_MCP2515_MEMBER(Status)::change_mode(mcp2515::Mode mode) {
     return Status::wrong_mode;
   }
   control_ = control;
-  running_ = !mcp2515::is_rest(mode);
+  if (mcp2515::is_rest(mode)) {
+    status_ &= static_cast<uint8_t>(~QuickStatus::txif);
+  }
   return Status::ok;
 }
 
 ROIO_MCP2515_MEMBER(bool)::await(mcp2515::Mode mode) {
   bool is_there = false;
   for (uint8_t left = mcp2515::pauses; !is_there && left != 0; --left) {
-    port_.pause(mcp2515::pause_us);
+    port().pause(mcp2515::pause_us);
     is_there = mcp2515::Control::mode_of(read_register(Register::canstat)) == mode;
   }
   return is_there;
@@ -65,7 +67,7 @@ ROIO_MCP2515_MEMBER(void)::prepare_sleep() {
 ROIO_MCP2515_MEMBER(bool)::sleeps_or_slept() {
   bool slept = false;
   for (uint8_t left = mcp2515::pauses; !slept && left != 0; --left) {
-    port_.pause(mcp2515::pause_us);
+    port().pause(mcp2515::pause_us);
     slept = is_asleep() || (read_register(Register::canintf) & mcp2515::Interrupt::wake_up) != 0;
   }
   return slept;

@@ -7,21 +7,21 @@
 
 namespace roio {
 
-/// Whether a frame waits in the chip, as far as is known or can be seen. A line that is low is no
-/// frame yet: it may be stuck, or a spike.
-/// @param looked whether READ STATUS has been read in this call.
-ROIO_MCP2515_MEMBER(bool)::find_received(bool& looked) {
-  if (quick_ == 0 && !looked && (!requests_.is_on() || port_.interrupt_line_is_low())) {
+/// Looks for a frame, unless one is known or the line says that there is none. A line that is low
+/// is no frame yet: it may be stuck, or a spike.
+/// @return whether READ STATUS was read.
+ROIO_MCP2515_MEMBER(bool)::look_for_frame() {
+  if (received() == 0 && (!line().is_on() || port().interrupt_line_is_low())) {
     look();
-    looked = true;
+    return true;
   }
-  return quick_ != 0;
+  return false;
 }
 
 /// Takes the older frame out of the chip. There must be one.
 /// @return whether it is one for the program.
 ROIO_MCP2515_MEMBER(bool)::fetch(Mcp2515Frame& frame) {
-  if (!read_rx_buffer((quick_ & QuickStatus::rx0) != 0 && !rx1_is_older_, frame)) {
+  if (!read_rx_buffer((status_ & QuickStatus::rx0) != 0, frame)) {
     return false;
   }
   const bool wanted = Traits::all_kinds || Traits::wants(frame);
@@ -44,46 +44,45 @@ ROIO_MCP2515_MEMBER(bool)::fetch(Mcp2515Frame& frame) {
 /// @param first RXB0, else RXB1.
 /// @return false: the chip was lost meanwhile; the frame cannot be trusted.
 ROIO_MCP2515_MEMBER(bool)::read_rx_buffer(bool first, Mcp2515Frame& frame) {
-  const bool polls = !requests_.is_on();
+  const bool polls = !line().is_on();
   bool called = true;
   bool looks = true;
   uint8_t quick = 0;
   {
-    Transaction transaction(port_);
-    transaction.exchange(mcp2515::read_rx(first));
+    Transaction transaction(port(), mcp2515::read_rx(first));
     transaction.receive(frame.bytes, Mcp2515Frame::head_length);
     frame.limit_length();
     // Only as many as the frame has.
     if (frame.length() != 0) {
       transaction.receive(frame.data(), frame.length());
     }
-    called = polls || port_.interrupt_line_is_low();
-    typename Port::Uninterrupted together(port_);
-    transaction.restart();
-    looks = polls || !called || port_.interrupt_line_is_low();
+    called = polls || port().interrupt_line_is_low();
+    typename Port::Uninterrupted together(port());
+    transaction.release();
+    looks = polls || !called || port().interrupt_line_is_low();
     if (looks) {
-      transaction.exchange(static_cast<uint8_t>(Instruction::read_status));
+      transaction.restart(static_cast<uint8_t>(Instruction::read_status));
       quick = transaction.exchange(0);
     }
   }
+  status_ &= static_cast<uint8_t>(~QuickStatus::any_rx);
   if (looks) {
+    if (first) {
+      status_ |= QuickStatus::rx1;  // if it is full now, it has the older frame
+    }
     // Once only: the order follows from this very look, and that the buffer was freed.
-    note(quick, 1);
-    if (!called && running_) {
+    if (!take_in(quick)) {
+      lose_chip();
+      count(counters_.discarded);
+      return false;
+    }
+    if (!called) {
       lose_line();
     }
-  } else {
-    quick_ = 0;
-  }
-  if (!running_) {
-    count(counters_.discarded);
-    return false;
-  }
-  rx1_is_older_ = 0;
-  if (quick_ != 0) {
-    rx1_is_older_ = first ? quick_ & QuickStatus::rx1 : 0;
-    // Perhaps both were full for a while, and a third frame was lost: to be looked at soon.
-    check_soon();
+    if (received() != 0) {
+      // Perhaps both were full for a while, and a third frame was lost: to be looked at soon.
+      check_soon();
+    }
   }
   return true;
 }
@@ -98,44 +97,44 @@ ROIO_MCP2515_MEMBER(Status)::receive(Frame& frame) {
 }
 
 ROIO_MCP2515_MEMBER(Status)::receive(Mcp2515Frame& frame) {
-  if (rx_queue_.empty() && RxQueue > 0) {
+  if (rx_queue().empty() && RxQueue > 0) {
     poll();
   }
-  if (!rx_queue_.empty()) {
-    frame = rx_queue_.front();
-    rx_queue_.pop();
+  if (!rx_queue().empty()) {
+    frame = rx_queue().front();
+    rx_queue().pop();
     return Status::ok;
   }
-  if (!running_) {
+  if (!running()) {
     return Status::no_chip;
   }
-  bool received = false;
+  bool is_one = false;
   if (RxQueue == 0) {
-    bool looked = false;
+    bool looked = look_for_frame();
     // As many as the chip holds, so that frames for others keep nobody here.
-    for (uint8_t tries = 2; tries != 0 && !received && find_received(looked); --tries) {
-      received = fetch(frame);
+    for (uint8_t tries = 2; tries != 0 && !is_one && received() != 0; --tries) {
+      is_one = fetch(frame);
       looked = true;
     }
     // Without a line it has looked by now, in one way or the other.
     tend(looked || !Port::has_interrupt_line);
   }
-  return received ? Status::ok : running_ ? Status::empty : Status::no_chip;
+  return is_one ? Status::ok : running() ? Status::empty : Status::no_chip;
 }
 
 ROIO_MCP2515_MEMBER(Status)::poll() {
-  if (!running_) {
+  if (!running()) {
     return Status::no_chip;
   }
-  bool looked = false;
-  for (uint8_t i = 0; i < RxQueue + 2U && !rx_queue_.full() && find_received(looked); ++i) {
-    if (fetch(rx_queue_.next())) {
-      rx_queue_.commit();
+  bool looked = !rx_queue().full() && look_for_frame();
+  for (uint8_t i = 0; i < RxQueue + 2U && !rx_queue().full() && received() != 0; ++i) {
+    if (fetch(rx_queue().next())) {
+      rx_queue().commit();
     }
     looked = true;
   }
   tend(looked);
-  return running_ ? Status::ok : Status::no_chip;
+  return running() ? Status::ok : Status::no_chip;
 }
 
 }  // namespace roio

@@ -15,12 +15,12 @@ ROIO_MCP2515_MEMBER(Status)::send(const Frame& frame, uint8_t token) {
 }
 
 ROIO_MCP2515_MEMBER(Status)::send(const Mcp2515Frame& frame, uint8_t token) {
-  if (pending_ != 0) {
+  if (requested() != 0) {
     // Only the chip knows whether it has room by now.
     look();
     pump();
   }
-  if (!running_) {
+  if (!running()) {
     return Status::no_chip;
   }
   if ((control_ & mcp2515::Control::mode_mask) ==
@@ -33,72 +33,74 @@ ROIO_MCP2515_MEMBER(Status)::send(const Mcp2515Frame& frame, uint8_t token) {
 /// Whether no frame waits that has to go first, and the chip has room; then it is there.
 ROIO_MCP2515_MEMBER(bool)::give_to_chip(const Mcp2515Frame& frame, uint8_t token) {
   const bool goes_next =
-      tx_queue_.empty() || (is_urgent(frame) && !is_urgent(tx_queue_.front().frame));
+      tx_queue().empty() || (is_urgent(frame) && !is_urgent(tx_queue().front().frame));
   return goes_next && load(frame, token);
 }
 
 ROIO_MCP2515_MEMBER(Status)::enqueue(const Mcp2515Frame& frame, uint8_t token) {
-  if (tx_queue_.full() || requests_.aborting()) {
+  if (tx_queue().full() || requests().aborting()) {
     return Status::full;
   }
-  uint8_t place = tx_queue_.size();
-  tx_queue_.commit();
+  uint8_t place = tx_queue().size();
+  tx_queue().commit();
   if (is_urgent(frame)) {
     while (place > 0) {
       const uint8_t ahead = static_cast<uint8_t>(place - 1U);
-      if (is_urgent(tx_queue_[ahead].frame)) {
+      if (is_urgent(tx_queue()[ahead].frame)) {
         break;
       }
-      tx_queue_[place] = tx_queue_[ahead];
+      tx_queue()[place] = tx_queue()[ahead];
       place = ahead;
     }
   }
-  tx_queue_[place].frame = frame;
-  tx_queue_[place].keep(token);
+  tx_queue()[place].frame = frame;
+  tx_queue()[place].keep(token);
   return Status::ok;
 }
 
 ROIO_MCP2515_MEMBER(void)::pump() {
-  while (running_ && !tx_queue_.empty() &&
-         load(tx_queue_.front().frame, tx_queue_.front().kept())) {
-    tx_queue_.pop();
+  while (running() && !tx_queue().empty() &&
+         load(tx_queue().front().frame, tx_queue().front().kept())) {
+    tx_queue().pop();
   }
 }
 
 ROIO_MCP2515_MEMBER(bool)::load(const Mcp2515Frame& frame, uint8_t token) {
-  const bool accepts = !requests_.aborting();
-  const uint8_t buffer = accepts ? order().choose(is_urgent(frame), pending_) : mcp2515::no_buffer;
+  const bool accepts = !requests().aborting();
+  const uint8_t buffer =
+      accepts ? order().choose(is_urgent(frame), requested()) : mcp2515::no_buffer;
   if (buffer == mcp2515::no_buffer) {
     return false;
   }
   const uint8_t length = Traits::all_kinds && frame.is_remote() ? uint8_t{0} : frame.length();
   {
-    Transaction transaction(port_);
+    // With back_to_back from TXBnCTRL on, which is in front of the frame.
+    Transaction transaction(port(), Traits::back_to_back ? static_cast<uint8_t>(Instruction::write)
+                                                         : mcp2515::load_tx(buffer));
     if (Traits::back_to_back) {
-      // TXBnCTRL is in front of the frame.
-      open(transaction, Instruction::write, mcp2515::txbctrl(buffer));
-      transaction.exchange(order().level_of(buffer));
-    } else {
-      transaction.exchange(mcp2515::load_tx(buffer));
+      transaction.put(static_cast<uint8_t>(mcp2515::txbctrl(buffer)));
+      transaction.put(order().level_of(buffer));
     }
     transaction.send(frame.bytes, static_cast<uint8_t>(Mcp2515Frame::head_length + length));
     // By RTS, never by writing TXREQ: errata item 5.
-    transaction.restart();
-    transaction.exchange(mcp2515::request_to_send(buffer));
+    transaction.release();
+    transaction.restart(mcp2515::request_to_send(buffer));
   }
-  pending_ = static_cast<uint8_t>(pending_ | QuickStatus::txreq(buffer));
-  requests_.keep(buffer, token);
+  status_ = static_cast<uint8_t>(status_ | QuickStatus::txreq(buffer));
+  requests().keep(buffer, token);
+  if (!Traits::reports_outcomes) {
+    count(counters_.sent);
+  }
   return true;
 }
 
-/// Finds the transmissions that have come to their end.
-ROIO_MCP2515_MEMBER(void)::settle(uint8_t quick) {
-  const uint8_t ended = static_cast<uint8_t>(pending_ & ~quick);
-  pending_ &= quick;
-  if (!Traits::reports_outcomes || ended != 0) {
+/// What follows from it that these transmissions have come to their end: bits TXREQ as in READ
+/// STATUS.
+ROIO_MCP2515_MEMBER(void)::settle(uint8_t ended) {
+  if (Traits::reports_outcomes && ended != 0) {
     end(ended, TxOutcome::sent);
   }
-  if (requests_.aborting() && pending_ == 0) {
+  if (requests().aborting() && requested() == 0) {
     finish_abort();
   }
 }
@@ -106,34 +108,26 @@ ROIO_MCP2515_MEMBER(void)::settle(uint8_t quick) {
 /// The chip has let go of all. What is to be sent all the same is still in its buffers.
 ROIO_MCP2515_MEMBER(void)::finish_abort() {
   modify_register(Register::canctrl, mcp2515::Control::abort_all, 0);
-  requests_.set_aborting(false);
-  const uint8_t again = requests_.take_again();
+  requests().set_aborting(false);
+  const uint8_t again = requests().take_again();
   for (uint8_t buffer = mcp2515::urgent_buffer; again != 0 && buffer != 0; buffer >>= 1) {
     if ((again & QuickStatus::txreq(buffer)) != 0) {
-      Transaction transaction(port_);
-      transaction.exchange(mcp2515::request_to_send(buffer));
+      Transaction transaction(port(), mcp2515::request_to_send(buffer));
     }
   }
-  pending_ = again;
+  status_ = static_cast<uint8_t>(status_ | again);
 }
 
 /// Reports what became of these requests: bits TXREQ as in READ STATUS.
 /// @param outcome unknown, or what there is to be found out more about.
-ROIO_MCP2515_MEMBER(void)::end(uint8_t requests, TxOutcome outcome) {
-  if (!Traits::reports_outcomes) {
-    auto& counter = outcome == TxOutcome::sent ? counters_.sent : counters_.unknown;
-    for (; requests != 0; requests &= static_cast<uint8_t>(requests - 1U)) {
-      count(counter);
-    }
-    return;
-  }
+ROIO_MCP2515_MEMBER(void)::end(uint8_t ended, TxOutcome outcome) {
   uint8_t request = QuickStatus::txreq(mcp2515::urgent_buffer);
   for (uint8_t buffer = mcp2515::urgent_buffer; buffer != 0; buffer >>= 1, request >>= 2) {
-    if ((requests & request) == 0) {
+    if ((ended & request) == 0) {
       continue;
     }
     if (outcome == TxOutcome::unknown || !may_end_otherwise()) {
-      report(requests_.token_of(buffer), outcome);
+      report(requests().token_of(buffer), outcome);
     } else {
       end_somehow(buffer);
     }
@@ -141,17 +135,17 @@ ROIO_MCP2515_MEMBER(void)::end(uint8_t requests, TxOutcome outcome) {
 }
 
 /// A request ends by success, unless somebody has asked for less.
-ROIO_MCP2515_MEMBER(bool)::may_end_otherwise() const {
-  return requests_.aborting() || (control_ & mcp2515::Control::one_shot) != 0;
+ROIO_MCP2515_MEMBER(bool)::may_end_otherwise() {
+  return requests().aborting() || (control_ & mcp2515::Control::one_shot) != 0;
 }
 
 /// What the chip says of it. A frame that was taken back with others, and is not over, ends later:
 /// finish_abort() sends it again.
 ROIO_MCP2515_MEMBER(void)::end_somehow(uint8_t buffer) {
-  const uint8_t token = requests_.token_of(buffer);
+  const uint8_t token = requests().token_of(buffer);
   const TxOutcome outcome = outcome_of(buffer);
-  if (outcome == TxOutcome::aborted && !traits_.is_over(token)) {
-    requests_.add_again(QuickStatus::txreq(buffer));
+  if (outcome == TxOutcome::aborted && !traits().is_over(token)) {
+    requests().add_again(QuickStatus::txreq(buffer));
   } else {
     report(token, outcome);
   }
@@ -178,32 +172,33 @@ ROIO_MCP2515_MEMBER(void)::report(uint8_t token, TxOutcome outcome) {
   } else {
     count(counters_.not_sent);
   }
-  traits_.on_outcome(token, outcome);
+  traits().on_outcome(token, outcome);
 }
 
 template <typename Port, uint8_t RxQueue, uint8_t TxQueue, typename Traits>
 template <typename T>
 void Mcp2515<Port, RxQueue, TxQueue, Traits>::abort() {
   static_assert(T::reports_outcomes, "abort() needs Traits::reports_outcomes");
-  for (uint8_t left = tx_queue_.size(); left != 0; --left) {
-    const Waiting one = tx_queue_.front();
-    tx_queue_.pop();
-    if (traits_.is_over(one.kept())) {
+  for (uint8_t left = tx_queue().size(); left != 0; --left) {
+    const Waiting one = tx_queue().front();
+    tx_queue().pop();
+    if (traits().is_over(one.kept())) {
       report(one.kept(), TxOutcome::aborted);
     } else {
-      tx_queue_.next() = one;
-      tx_queue_.commit();
+      tx_queue().next() = one;
+      tx_queue().commit();
     }
   }
-  if (running_ && has_over_in_chip()) {
-    requests_.set_aborting(true);
+  if (running() && has_over_in_chip()) {
+    requests().set_aborting(true);
     modify_register(Register::canctrl, mcp2515::Control::abort_all, mcp2515::Control::abort_all);
   }
 }
 
 ROIO_MCP2515_MEMBER(bool)::has_over_in_chip() {
   for (uint8_t buffer = mcp2515::urgent_buffer; buffer != 0; buffer >>= 1) {
-    if (mcp2515::is_pending(pending_, buffer) && traits_.is_over(requests_.token_of(buffer))) {
+    if ((requested() & QuickStatus::txreq(buffer)) != 0 &&
+        traits().is_over(requests().token_of(buffer))) {
       return true;
     }
   }

@@ -8,6 +8,11 @@
 namespace roio {
 
 namespace mcp2515 {
+// The registers 00h..0Bh, 10h..1Bh and 20h..2Bh.
+constexpr uint8_t setup_block = 12;
+constexpr uint8_t setup_gap = 4;
+constexpr uint8_t setup_end = 0x30;
+
 /// Sent from the chip to itself to time its oscillator; no five equal bits up to the CRC.
 constexpr uint32_t clock_frame_id = UINT32_C(0x0AAAAAAA);
 constexpr uint8_t clock_frame_data = 0x55;
@@ -20,76 +25,78 @@ constexpr uint8_t slowest_clock_factor = 12;  ///< 4 MHz told 40, and some more.
 constexpr uint8_t clock_tolerance = 8;  ///< One part in so many; crystals in use are 1 in 4 apart.
 }  // namespace mcp2515
 
-/// Has the chip enter a mode, and sees it there: configuration mode by a reset, which is repeated
-/// because one that comes before the oscillator runs is lost.
+/// Asks the chip to enter a mode: configuration mode by a reset.
 /// @param control what CANCTRL is to be.
-ROIO_MCP2515_MEMBER(bool)::reach(uint8_t control) {
+/// @return whether it is there a little later. If not it may need more time; or a reset came before
+///         the oscillator runs, and is lost: in both cases again.
+ROIO_MCP2515_MEMBER(bool)::enters(uint8_t control) {
   using mcp2515::Control;
-  write_register(Register::canctrl, control);
-  uint8_t pauses = mcp2515::pauses;
-  do {
-    if (control == Control::after_reset) {
-      Transaction transaction(port_);
-      transaction.exchange(static_cast<uint8_t>(Instruction::reset));
-    }
-    port_.pause(mcp2515::pause_us);
-    if (((read_register(Register::canstat) ^ control) & Control::mode_mask) == 0) {
-      return true;
-    }
-  } while (--pauses != 0);
-  return false;
+  if (control == Control::after_reset) {
+    const Transaction transaction(port(), static_cast<uint8_t>(Instruction::reset));
+  } else {
+    write_register(Register::canctrl, control);
+  }
+  port().pause(mcp2515::pause_us);
+  return ((read_register(Register::canstat) ^ control) & Control::mode_mask) == 0;
+}
+
+ROIO_MCP2515_MEMBER(bool)::reach(uint8_t control) {
+  bool is_there = false;
+  for (uint8_t left = mcp2515::pauses; !is_there && left != 0; --left) {
+    is_there = enters(control);
+  }
+  return is_there;
 }
 
 /// Writes filters, masks and timing, and reads them back.
-/// @return 0 when all are as they have to be.
-ROIO_MCP2515_MEMBER(uint8_t)::exchange_setup(const Mcp2515Config& config) {
-  constexpr uint8_t block_length = 12;
-  constexpr uint8_t blocks_end = 0x30;
-  constexpr uint8_t write = static_cast<uint8_t>(Instruction::write);
-  constexpr uint8_t read = static_cast<uint8_t>(Instruction::read);
-  uint8_t instruction = write;
+/// @return whether all are as they have to be.
+ROIO_MCP2515_MEMBER_OF(Setup, bool)::exchange_setup(const Setup& setup) {
+  Instruction instruction = Instruction::write;
   for (;;) {
     uint8_t differences = 0;  // what a chip that is written to answers is nothing
     uint8_t address = 0;
     do {
-      Transaction transaction(port_);
-      open(transaction, static_cast<Instruction>(instruction), static_cast<Register>(address));
-      do {
-        const uint8_t byte = config[address];
-        differences = static_cast<uint8_t>(differences | (transaction.exchange(byte) ^ byte));
-        ++address;
-      } while ((address & 0x0FU) != block_length);
-      address = static_cast<uint8_t>(address + 0x10U - block_length);
-    } while (address != blocks_end);
-    if (instruction == read) {
-      return differences;
+      RegisterAccess access(port(), instruction, static_cast<Register>(address));
+      for (uint8_t left = mcp2515::setup_block; left != 0; --left) {
+        const uint8_t byte = setup[address++];
+        differences |= static_cast<uint8_t>(access.exchange(byte) ^ byte);
+      }
+      address = static_cast<uint8_t>(address + mcp2515::setup_gap);
+    } while (address != mcp2515::setup_end);
+    if (instruction == Instruction::read) {
+      return differences == 0;
     }
-    instruction = read;
+    instruction = Instruction::read;
   }
 }
 
 /// Writes what the registers have to be, and reads it back.
-ROIO_MCP2515_MEMBER(bool)::configure(const Mcp2515Config& config) {
+ROIO_MCP2515_MEMBER_OF(Setup, bool)::configure(const Setup& setup) {
   using mcp2515::Interrupt;
   using mcp2515::RxControl;
   constexpr uint8_t rx0 = RxControl::by_filters | RxControl::rollover;
   write_register(Register::rxb0ctrl, rx0);
-  bool right = (read_register(Register::rxb0ctrl) & RxControl::settings) == rx0;
+  if ((read_register(Register::rxb0ctrl) & RxControl::settings) != rx0 || !exchange_setup(setup)) {
+    return false;
+  }
   for (uint8_t buffer = mcp2515::urgent_buffer; Traits::reports_outcomes && buffer != 0;
        buffer >>= 1) {
     write_register(mcp2515::txbctrl(buffer), order().level_of(buffer));
-    right = right && read_register(mcp2515::txbctrl(buffer)) == order().level_of(buffer);
+    if (read_register(mcp2515::txbctrl(buffer)) != order().level_of(buffer)) {
+      return false;
+    }
   }
-  right = right && exchange_setup(config) == 0;
   if (Port::has_interrupt_line) {
     constexpr uint8_t received = Interrupt::rx0 | Interrupt::rx1;
     write_register(Register::caninte, received);
-    right = right && read_register(Register::caninte) == received;
+    if (read_register(Register::caninte) != received) {
+      return false;
+    }
   }
   // The three TXnIF are set and never cleared, so that every READ STATUS shows whether the chip
   // still knows what it was told.
   write_register(Register::canintf, Interrupt::tx_any);
-  return right && read_quick_status() == QuickStatus::txif;
+  return read_quick_status() == QuickStatus::txif;
 }
 
 /// @return whether the chip is there, and in configuration mode.
@@ -110,23 +117,37 @@ ROIO_MCP2515_MEMBER(Status)::begin(const Mcp2515Config& config) {
   return start(config);
 }
 
-ROIO_MCP2515_MEMBER(Status)::start(const Mcp2515Config& config) {
+/// Into configuration mode, to be set up, and from there into the mode that is asked for.
+ROIO_MCP2515_MEMBER_OF(Setup, Status)::start(const Setup& setup) {
+  using mcp2515::Control;
   count_what_is_forgotten();
-  if (!reset_chip() || !configure(config)) {
+  forget_chip();
+  control_ = setup.control();
+  uint8_t control = Control::after_reset;
+  for (uint8_t left = mcp2515::pauses; left != 0; --left) {
+    if (!enters(control)) {
+      continue;
+    }
+    if (control == control_) {
+      status_ |= QuickStatus::txif;
+      if (Port::has_interrupt_line && !line().is_on()) {
+        lose_line();
+      }
+      return Status::ok;
+    }
+    if (!configure(setup)) {
+      return Status::no_chip;
+    }
+    try_line();
+    control = control_;
+    left = mcp2515::pauses;
+  }
+  if (control != control_) {
     return Status::no_chip;
   }
-  try_line();
-  control_ = config.control();
-  if (!reach(control_)) {
-    // Not later either, when nobody expects it any more.
-    write_register(Register::canctrl, mcp2515::Control::after_reset);
-    return Status::wrong_mode;
-  }
-  running_ = true;
-  if (Port::has_interrupt_line && !requests_.is_on()) {
-    lose_line();
-  }
-  return Status::ok;
+  // Not later either, when nobody expects it any more.
+  write_register(Register::canctrl, Control::after_reset);
+  return Status::wrong_mode;
 }
 
 ROIO_MCP2515_MEMBER(Status)::stop() {
@@ -137,14 +158,17 @@ ROIO_MCP2515_MEMBER(Status)::stop() {
 
 /// Losses that the chip knows of, and frames that nobody has read.
 ROIO_MCP2515_MEMBER(void)::count_what_is_forgotten() {
-  if (!Traits::diagnoses || !running_) {
+  if (!Traits::diagnoses || !running()) {
     return;
   }
   check_chip();
-  if (running_) {
+  if (running()) {
     look();
-    counters_.discarded += (quick_ & QuickStatus::rx0) != 0 ? 1 : 0;
-    counters_.discarded += (quick_ & QuickStatus::rx1) != 0 ? 1 : 0;
+  }
+  if (running()) {
+    const uint8_t quick = read_quick_status();  // status_ need not have both
+    counters_.discarded += (quick & QuickStatus::rx0) != 0 ? 1 : 0;
+    counters_.discarded += (quick & QuickStatus::rx1) != 0 ? 1 : 0;
   }
 }
 
@@ -193,8 +217,7 @@ ROIO_MCP2515_MEMBER(void)::load_clock_frames() {
       byte = mcp2515::clock_frame_data;
     }
     const Mcp2515Frame bytes = mcp2515::to_chip(frame);
-    Transaction transaction(port_);
-    transaction.exchange(mcp2515::load_tx(buffer));
+    Transaction transaction(port(), mcp2515::load_tx(buffer));
     transaction.send(bytes.bytes, sizeof bytes.bytes);
   }
 }
@@ -202,16 +225,13 @@ ROIO_MCP2515_MEMBER(void)::load_clock_frames() {
 /// Sends them, and waits until all are gone.
 /// @return how long that took, or some time from limit_us on.
 ROIO_MCP2515_MEMBER(uint32_t)::time_clock_frames(uint32_t limit_us) {
-  {
-    Transaction transaction(port_);
-    transaction.exchange(mcp2515::request_to_send(mcp2515::all_buffers));
-  }
-  const uint32_t start = port_.microseconds();
+  { const Transaction transaction(port(), mcp2515::request_to_send(mcp2515::all_buffers)); }
+  const uint32_t start = port().microseconds();
   uint32_t elapsed_us = 0;
   // A clock that stands still (interrupts are off) must not keep anybody here: a look takes 2 us.
   uint32_t looks = limit_us / 2U;
   do {
-    elapsed_us = port_.microseconds() - start;
+    elapsed_us = port().microseconds() - start;
   } while ((read_quick_status() & QuickStatus::any_txreq) != 0 && elapsed_us < limit_us &&
            --looks != 0);
   return elapsed_us;

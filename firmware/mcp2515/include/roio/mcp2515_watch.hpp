@@ -14,35 +14,20 @@ constexpr uint8_t calls_at_most = 192;  ///< Where there is always a frame to be
 
 // --- the chip's registers ------------------------------------------------------------------------
 
-ROIO_MCP2515_MEMBER(void)::open(Transaction& transaction, Instruction instruction,
-                                Register address) {
-  transaction.exchange(static_cast<uint8_t>(instruction));
-  transaction.exchange(static_cast<uint8_t>(address));
-}
-
 ROIO_MCP2515_MEMBER(uint8_t)::read_register(Register address) {
-  Transaction transaction(port_);
-  open(transaction, Instruction::read, address);
-  return transaction.exchange(0);
+  RegisterAccess access(port(), Instruction::read, address);
+  return access.exchange(0);
 }
 
 ROIO_MCP2515_MEMBER(void)::write_register(Register address, uint8_t value) {
-  Transaction transaction(port_);
-  open(transaction, Instruction::write, address);
-  transaction.exchange(value);
+  RegisterAccess access(port(), Instruction::write, address);
+  access.put(value);
 }
 
 ROIO_MCP2515_MEMBER(void)::modify_register(Register address, uint8_t mask, uint8_t value) {
-  Transaction transaction(port_);
-  open(transaction, Instruction::bit_modify, address);
-  transaction.exchange(mask);
-  transaction.exchange(value);
-}
-
-ROIO_MCP2515_MEMBER(uint8_t)::read_quick_status() {
-  Transaction transaction(port_);
-  transaction.exchange(static_cast<uint8_t>(Instruction::read_status));
-  return transaction.exchange(0);
+  RegisterAccess access(port(), Instruction::bit_modify, address);
+  access.put(mask);
+  access.put(value);
 }
 
 ROIO_MCP2515_MEMBER(void)::read_error_counters(uint8_t& transmit, uint8_t& receive) {
@@ -54,39 +39,60 @@ ROIO_MCP2515_MEMBER(void)::read_error_counters(uint8_t& transmit, uint8_t& recei
 
 /// The three TXnIF are set, and the chip sends nothing but what it was told to. A chip that was
 /// reset, and lines stuck at 0 or 1, look different; but for one that is at 1 when all buffers are
-/// in use: there is no mode 7, which CANSTAT would have then.
+/// in use.
 ROIO_MCP2515_MEMBER(bool)::is_plausible(uint8_t quick) {
-  using mcp2515::Control;
-  if (quick == QuickStatus::everything &&
-      (read_register(Register::canstat) & Control::mode_mask) == Control::mode_mask) {
-    return false;
-  }
-  return (quick & static_cast<uint8_t>(~(QuickStatus::any_rx | pending_))) == QuickStatus::txif;
+  const uint8_t may_be = static_cast<uint8_t>(QuickStatus::any_rx | (status_ ^ QuickStatus::txif));
+  return (quick & static_cast<uint8_t>(~may_be)) == QuickStatus::txif;
 }
 
 ROIO_MCP2515_MEMBER(uint8_t)::read_status() {
-  const uint8_t quick = read_quick_status();
-  note(quick, 2);
-  return quick;
+  if (running()) {
+    look();
+  }
+  return read_quick_status();
 }
 
-/// Reads READ STATUS and takes in what it shows.
+/// Reads READ STATUS and takes in what it shows. Nonsense may come from a spike on the wires, once;
+/// then it tells of a lost chip.
 ROIO_MCP2515_MEMBER(void)::look() {
-  note(read_quick_status(), 2);
-}
-
-/// Takes in what READ STATUS showed; nonsense tells of a lost chip.
-/// @param tries 2 where nonsense may as well come from a spike on the wires: then once more.
-ROIO_MCP2515_MEMBER(void)::note(uint8_t quick, uint8_t tries) {
-  while (!is_plausible(quick)) {
-    if (--tries == 0) {
-      lose_chip();
+  for (uint8_t tries = 2; tries != 0; --tries) {
+    if (take_in(read_quick_status())) {
       return;
     }
-    quick = read_quick_status();
   }
-  quick_ = quick & QuickStatus::any_rx;
-  settle(quick);
+  lose_chip();
+}
+
+/// Takes in what READ STATUS showed.
+/// @return whether it was plausible.
+ROIO_MCP2515_MEMBER(bool)::take_in(uint8_t quick) {
+  if (quick == QuickStatus::everything) {
+    return take_in_everything();
+  }
+  if (!is_plausible(quick)) {
+    return false;
+  }
+  if (received() == QuickStatus::rx1 && (quick & QuickStatus::rx1) != 0) {
+    quick &= static_cast<uint8_t>(~QuickStatus::rx0);  // newer: not before RXB1 was read
+  }
+  const uint8_t ended = requested() & static_cast<uint8_t>(~quick);
+  status_ = quick;
+  settle(ended);
+  return true;
+}
+
+/// The same where a line that is at 1 looks as a chip does of which all buffers are in use: there
+/// is no mode 7, which CANSTAT would have then.
+ROIO_MCP2515_MEMBER(bool)::take_in_everything() {
+  constexpr uint8_t no_mode = mcp2515::Control::mode_mask;
+  if ((status_ | QuickStatus::any_rx) != QuickStatus::everything ||
+      (read_register(Register::canstat) & no_mode) == no_mode) {
+    return false;
+  }
+  if (received() != QuickStatus::rx1) {
+    status_ = QuickStatus::everything;
+  }
+  return true;
 }
 
 // --- the interrupt line --------------------------------------------------------------------------
@@ -96,7 +102,7 @@ ROIO_MCP2515_MEMBER(void)::try_line() {
   if (Port::has_interrupt_line && Traits::doubts_line) {
     const bool falls = line_follows(true);
     const bool rises = line_follows(false);  // in any case: no flag may stay
-    requests_.set_on(falls && rises);
+    line().set_on(falls && rises);
   }
 }
 
@@ -106,12 +112,12 @@ ROIO_MCP2515_MEMBER(bool)::line_follows(bool low) {
   constexpr uint8_t pulled = Interrupt::tx_any | Interrupt::rx0;
   write_register(Register::canintf, low ? pulled : Interrupt::tx_any);
   read_quick_status();  // the line has its time
-  return port_.interrupt_line_is_low() == low;
+  return port().interrupt_line_is_low() == low;
 }
 
 /// Until the next begin().
 ROIO_MCP2515_MEMBER(void)::lose_line() {
-  requests_.set_on(false);
+  line().set_on(false);
   count(counters_.line_losses);
 }
 
@@ -122,18 +128,18 @@ ROIO_MCP2515_MEMBER(void)::lose_line() {
 ROIO_MCP2515_MEMBER(void)::tend(bool looked) {
   ++calls_;
   // When there is time, and at the latest when there has been none for long.
-  const bool check =
-      calls_ >= mcp2515::calls_between_checks && (quick_ == 0 || calls_ >= mcp2515::calls_at_most);
+  const bool check = calls_ >= mcp2515::calls_between_checks &&
+                     (received() == 0 || calls_ >= mcp2515::calls_at_most);
   // A line may keep silent for ever, and poll() alone does not receive.
-  const bool must_look = check || !tx_queue_.empty() || requests_.aborting() ||
-                         (Traits::reports_outcomes && pending_ != 0);
-  if (must_look && !looked && running_) {
+  const bool must_look = check || !tx_queue().empty() || requests().aborting() ||
+                         (Traits::reports_outcomes && requested() != 0);
+  if (must_look && !looked && running()) {
     look();
   }
-  if (!tx_queue_.empty()) {
+  if (!tx_queue().empty()) {
     pump();
   }
-  if (check && running_) {
+  if (check && running()) {
     calls_ = 0;
     check_chip();
   }
@@ -180,7 +186,7 @@ ROIO_MCP2515_MEMBER(bool)::diagnose(uint8_t errors) {
 }
 
 ROIO_MCP2515_MEMBER(void)::lose_chip() {
-  if (running_) {
+  if (running()) {
     count(counters_.chip_losses);
   }
   forget_chip();
@@ -188,13 +194,16 @@ ROIO_MCP2515_MEMBER(void)::lose_chip() {
 
 /// The chip has no memory of what it was told. What it had to send may or may not have gone out.
 ROIO_MCP2515_MEMBER(void)::forget_chip() {
-  running_ = false;
-  quick_ = 0;
-  rx1_is_older_ = 0;
-  requests_.set_aborting(false);
+  const uint8_t unknown = static_cast<uint8_t>(requested() | requests().take_again());
+  if (!Traits::reports_outcomes) {
+    counters_.unknown = static_cast<typename Traits::Count>(counters_.unknown + in_flight());
+  }
+  status_ = 0;
+  requests().set_aborting(false);
   error_flags_ = 0;
-  end(pending_ | requests_.take_again(), TxOutcome::unknown);
-  pending_ = 0;
+  if (Traits::reports_outcomes) {
+    end(unknown, TxOutcome::unknown);
+  }
 }
 
 ROIO_MCP2515_MEMBER(Mcp2515State)::state_of(uint8_t error_flags) {

@@ -23,6 +23,9 @@ struct Mcp2515Options {
   /// The overflow flag for a frame that found both buffers full: the datasheet's flow chart says
   /// RX1OVR, reports of real chips RX0OVR.
   bool full_sets_rx0ovr = false;
+  /// Whether filters, masks and RXM hold in listen-only mode, as datasheets before revision J have
+  /// it; since then everything is received (10.3).
+  bool listen_only_filters = false;
   /// What the registers that have no reset value hold at power-on is drawn from this.
   std::uint32_t power_on_seed = 1;
 };
@@ -146,6 +149,8 @@ class Mcp2515Chip : private ControllerClient {
   void update_mode();
   [[nodiscard]] bool may_change_mode() const;
   void enter_mode(OperationMode mode);
+  void listen();
+  void forget_errors();
   void wake_up();
   void apply_bit_timing();
   [[nodiscard]] NodeTiming timing() const;
@@ -174,6 +179,7 @@ class Mcp2515Chip : private ControllerClient {
   [[nodiscard]] bool is_full(int buffer) const;
   void store(const Frame& frame, int buffer, int filter);
   void overflow(std::uint8_t flag);
+  [[nodiscard]] bool takes_everything() const;
   [[nodiscard]] int matching_filter(const Frame& frame, int buffer) const;
   [[nodiscard]] bool filter_matches(const Frame& frame, int filter) const;
   [[nodiscard]] std::uint32_t identifier_at(std::uint8_t address) const;

@@ -110,24 +110,29 @@ class ChipPort {
 
   class Transaction {
    public:
-    explicit Transaction(ChipPort& port) : wire_(*port.wire_) { wire_.select(); }
+    Transaction(ChipPort& port, std::uint8_t first) : wire_(*port.wire_) {
+      wire_.select();
+      put(first);
+    }
     Transaction(const Transaction&) = delete;
     Transaction& operator=(const Transaction&) = delete;
-    ~Transaction() { wire_.deselect(); }
-    std::uint8_t exchange(std::uint8_t out) { return wire_.exchange(out); }
+    ~Transaction() { release(); }
+    void put(std::uint8_t byte) { wire_.exchange(byte); }
+    std::uint8_t exchange(std::uint8_t byte) { return wire_.exchange(byte); }
     void send(const std::uint8_t* bytes, std::uint8_t count) {
       for (; count > 0; --count) {
-        wire_.exchange(*bytes++);
+        put(*bytes++);
       }
     }
     void receive(std::uint8_t* bytes, std::uint8_t count) {
       for (; count > 0; --count) {
-        *bytes++ = wire_.exchange(0);
+        *bytes++ = exchange(0);
       }
     }
-    void restart() {
-      wire_.deselect();
+    void release() { wire_.deselect(); }
+    void restart(std::uint8_t first) {
       wire_.select();
+      put(first);
     }
 
    private:

@@ -33,6 +33,35 @@ void measure(uint8_t control, uint8_t status) {
   uart_put16(poll());
 }
 
+// What comes of it when the next byte is written, and the last one read, so many cycles after a
+// write, at half the clock: Cycles between the two instructions.
+template <uint16_t Cycles>
+__attribute__((noinline)) void write_after() {
+  uint8_t second = 0xA2;
+  asm volatile("" : "+r"(second));  // in a register now, and not only when it is needed
+  SPDR = 0xA1;
+  __builtin_avr_delay_cycles(Cycles);
+  SPDR = second;
+  __builtin_avr_delay_cycles(40);
+  (void)SPSR;
+  (void)SPDR;
+}
+
+template <uint16_t Cycles>
+__attribute__((noinline)) uint8_t read_after() {
+  SPDR = 0xA3;
+  __builtin_avr_delay_cycles(40);
+  (void)SPSR;
+  (void)SPDR;
+  SPDR = 0xA4;
+  __builtin_avr_delay_cycles(Cycles);
+  const uint8_t answer = SPDR;
+  __builtin_avr_delay_cycles(40);
+  (void)SPSR;
+  (void)SPDR;
+  return answer;
+}
+
 volatile uint8_t interrupts;
 ISR(SPI_STC_vect) {
   ++interrupts;
@@ -75,6 +104,17 @@ int main() {
   __builtin_avr_delay_cycles(200);
   uart_put16(interrupts);
   uart_put16(SPSR);
+  SPCR = _BV(SPE) | _BV(MSTR);
+  SPSR = _BV(SPI2X);
+  cli();
+  SPDR = 0xA0;
+  __builtin_avr_delay_cycles(40);
+  write_after<15>();
+  write_after<16>();
+  write_after<17>();
+  uart_put16(read_after<15>());
+  uart_put16(read_after<16>());
+  sei();
   for (;;) {
   }
 }
