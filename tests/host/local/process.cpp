@@ -67,6 +67,12 @@ void Peer::signal(int number) const {
   ::kill(pid_, number);
 }
 
+void Peer::stop() const {
+  signal(SIGSTOP);
+  int status = 0;
+  ::waitpid(pid_, &status, WUNTRACED);
+}
+
 void Peer::kill() {
   if (pid_ > 0) {
     signal(SIGKILL);

@@ -23,6 +23,8 @@ class Peer {
   /// Tells it a line, and that it is the last.
   void tell(const std::string& line);
   void signal(int number) const;
+  /// Stops it (SIGSTOP); when it returns, none of its threads runs.
+  void stop() const;
   [[nodiscard]] pid_t pid() const { return pid_; }
   /// Ends it if need be, and waits for that.
   void kill();
