@@ -192,7 +192,7 @@ INSTANTIATE_TEST_SUITE_P(Bridge, BridgeLoad,
                                          Load{false, true, 8, 0.93, sim::BoardKind::leonardo},
                                          Load{true, true, 8, 0.99, sim::BoardKind::leonardo},
                                          Load{true, false, 0, 0.99, sim::BoardKind::uno, false},
-                                         Load{false, true, 8, 0.82, sim::BoardKind::uno, false},
+                                         Load{false, true, 8, 0.81, sim::BoardKind::uno, false},
                                          Load{true, true, 4, 0.99, sim::BoardKind::uno, false},
                                          Load{true, true, 8, 0.99, sim::BoardKind::uno, false}),
                          name_of);

@@ -150,7 +150,7 @@ TEST(SerialEvents, WhatIsWrongWithABridgeIsToldAndItIsLookedForOn) {
   }
   EXPECT_EQ(bus->trouble()->code(), Errc::no_bridge);
   pty.with([](ScriptedBridge& one) {
-    one.version = 2;
+    one.version = 1;
     one.is_deaf = false;
   });
   EXPECT_EQ(next_events(*bus), (Events{.state = true}));

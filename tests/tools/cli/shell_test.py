@@ -16,7 +16,7 @@ def read(*path):
         return file.read()
 
 
-COMMANDS = ["send", "dump", "buses", "bridge show", "bridge set", "bridge identify", "bridge attach"]
+COMMANDS = ["send", "dump", "buses", "hub", "bridge show", "bridge set", "bridge identify", "bridge attach"]
 
 
 class SyncTest(CliTest):
@@ -71,7 +71,7 @@ class SyncTest(CliTest):
 class ManualTest(CliTest):
     def test_pages_are_clean(self):
         pages = sorted(glob.glob(os.path.join(TOOL, "man", "*.1")))
-        self.assertEqual(len(pages), 5)
+        self.assertEqual(len(pages), 6)
         done = subprocess.run(
             ["mandoc", "-Tlint", "-Wwarning", *pages], capture_output=True, text=True, timeout=GUARD
         )
@@ -90,11 +90,13 @@ class CompletionTest(CliTest):
 
     # command line, what is offered: bash replaces what follows the last ':' or '='
     LINES = [
-        ("roio-cli ", ["--help", "--version", "bridge", "buses", "dump", "help", "send"]),
+        ("roio-cli ", ["--help", "--version", "bridge", "buses", "dump", "help", "hub", "send"]),
         ("roio-cli d", ["dump"]),
         ("roio-cli send --cl", ["--class"]),
         ("roio-cli send --wait lo", ["local:robot"]),
         ("roio-cli help b", ["bridge", "buses"]),
+        ("roio-cli hub ", ["local:robot"]),
+        ("roio-cli hub --bit", ["--bitrate"]),
         ("roio-cli send --class s", ["stream", "system"]),
         ("roio-cli dump -t ", ["a", "d", "z"]),
         ("roio-cli dump -n 5 lo", ["local:robot"]),

@@ -16,9 +16,9 @@ WORDS = ("expected to=SUBNET.NODE, from=SUBNET.NODE, urgent, normal, class=messa
 
 # command line, the line on standard error
 WRONG = [
-    ("", "expected a command: send, dump, buses, bridge or help; `roio-cli --help` shows how"),
+    ("", "expected a command: send, dump, buses, hub, bridge or help; `roio-cli --help` shows how"),
     ("snd local:x",
-     'unknown command "snd": expected send, dump, buses, bridge or help; `roio-cli --help` shows how'),
+     'unknown command "snd": expected send, dump, buses, hub, bridge or help; `roio-cli --help` shows how'),
     ("--foo", 'unknown option "--foo"; `roio-cli --help` shows how'),
     # send: what is missing
     ("send", "expected BUS, DEST and DATA" + SEND_HELP),
@@ -149,7 +149,7 @@ WRONG = [
      'no frame can satisfy these filters together; put "or" between choices'),
     # help
     ("help snd",
-     'unknown command "snd": expected send, dump, buses, bridge or help; `roio-cli --help` shows how'),
+     'unknown command "snd": expected send, dump, buses, hub, bridge or help; `roio-cli --help` shows how'),
     ("help bridge shw",
      'unknown command "shw": expected show, set, identify or attach; `roio-cli bridge --help` shows '
      "how"),
