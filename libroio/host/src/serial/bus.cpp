@@ -309,8 +309,7 @@ void SerialBus::follow_session() {
   } else if (!trouble_ && open_until_.passed()) {
     trouble_.emplace(Errc::no_bridge, name_);
   }
-  if (became_ready || session_.waiting() < waiting_seen_ ||
-      (is_ready() && session_.all_done())) {
+  if (became_ready || session_.waiting() < waiting_seen_ || (is_ready() && session_.all_done())) {
     events_.set_room();
   }
   waiting_seen_ = session_.waiting();
