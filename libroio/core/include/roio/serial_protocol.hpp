@@ -117,7 +117,7 @@ inline uint8_t life_of_units(uint32_t units) {
   for (; units > 0x0FU; units >>= 1) {
     ++shift;
   }
-  const uint8_t life = static_cast<uint8_t>((shift << 4) | units);
+  const uint8_t life = static_cast<uint8_t>((static_cast<unsigned>(shift) << 4) | units);
   return shift > longest_life >> 4 ? longest_life : life;
 }
 

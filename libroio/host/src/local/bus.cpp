@@ -27,6 +27,10 @@ std::vector<SocketCanFilter> first_filters(const OpenOptions& options) {
                            : std::vector<SocketCanFilter>{SocketCanFilter{0, 0}};
 }
 
+std::system_error out_of_memory(const std::string& name) {
+  return {ENOMEM, std::generic_category(), name};
+}
+
 }  // namespace
 
 // --- opening and closing -------------------------------------------------------------------------
@@ -34,7 +38,7 @@ std::vector<SocketCanFilter> first_filters(const OpenOptions& options) {
 LocalBus::LocalBus(const std::string& bus_name, std::optional<std::uint32_t> bitrate_bps,
                    const OpenOptions& options)
     : name_("local:" + bus_name),
-      no_memory_(ENOMEM, std::generic_category(), name_),
+      no_memory_(out_of_memory(name_)),
       connector_(bus_name, bitrate_bps, options.carry),
       open_timeout_(options.open_timeout),
       inbox_(connector_.client(), first_filters(options)),
@@ -54,7 +58,7 @@ void LocalBus::await_first_look() {
     const std::system_error trouble = *trouble_;
     lock.unlock();
     close();
-    throw trouble;
+    throw std::system_error(trouble);
   }
   events_.forget();
 }

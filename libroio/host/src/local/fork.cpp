@@ -17,6 +17,7 @@ class Forks {
  public:
   // Never destroyed: buses of a program's own static objects may end after it.
   static Forks& instance() {
+    // NOLINTNEXTLINE(cppcoreguidelines-owning-memory,cppcoreguidelines-avoid-non-const-global-variables)
     static auto* const forks = new Forks;
     return *forks;
   }

@@ -214,14 +214,13 @@ void Hub::handle(HubClient& client, const Record& record) {
 void Hub::greet(HubClient& client, const Hello& hello) {
   const std::uint32_t bitrate = medium_->bitrate_bps().value_or(0);
   const auto refuse = [&](Errc why) { client.refuse({static_cast<std::uint32_t>(why), bitrate}); };
-  if (hello.magic != magic || hello.client == 0) {
+  const bool is_alive = hello.client != 0 && is_present(seat_.lock_fd(), hello.client);
+  if (hello.magic != magic || (hello.version == protocol_version && !is_alive)) {
     cut(client);
   } else if (hello.version != protocol_version) {
     refuse(Errc::version_mismatch);
   } else if (hello.bitrate_bps != 0 && hello.bitrate_bps != bitrate) {
     refuse(Errc::bitrate_mismatch);
-  } else if (!is_present(seat_.lock_fd(), hello.client)) {
-    cut(client);
   } else if (hello.host == Hello::wants_the_seat && roster_.has_host_but(hello.client)) {
     refuse(Errc::carried_already);
   } else if (hello.host == Hello::wants_the_seat) {

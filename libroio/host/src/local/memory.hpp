@@ -53,6 +53,8 @@ struct alignas(4096) Slot {
   std::array<std::atomic<std::uint64_t>, max_filters> filters;  ///< Identifier, mask above it.
 };
 
+// The head has a line of the processor's caches for itself:
+// NOLINTNEXTLINE(*-optin.performance.Padding)
 struct Header {
   std::atomic<std::uint64_t> magic;        ///< Says that all this is set up, and laid out as here.
   std::atomic<std::uint64_t> identity;     ///< Random: of the bus since somebody was on it.

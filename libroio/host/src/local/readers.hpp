@@ -75,9 +75,9 @@ class Readers {
   [[nodiscard]] std::uint64_t oldest() const {
     return head() >= log_size ? head() - log_size + 1 : 1;
   }
-  std::uint64_t take_away_from(std::size_t slot, std::uint64_t number);
-  bool lags(std::size_t slot, TimePoint now);
-  void wake_if_wanted(std::size_t slot);
+  std::uint64_t take_away_from(std::size_t index, std::uint64_t number);
+  bool lags(std::size_t index, TimePoint now);
+  void wake_if_wanted(std::size_t index);
 
   Memory& memory_;
   std::vector<std::size_t> used_;  // slots

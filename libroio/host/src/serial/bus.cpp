@@ -159,7 +159,8 @@ Transfer SerialBus::receive(std::span<Received> frames, Timeout timeout) {
 void SerialBus::set_filters(std::span<const SocketCanFilter> filters) {
   Lock lock(mutex_);
   // Without an answer, the next session begins with them.
-  await_reply(lock, filter_time, [this, filters](Done done) { take_filters(filters, done); });
+  await_reply(lock, filter_time,
+              [this, filters](Done done) { take_filters(filters, std::move(done)); });
 }
 
 void SerialBus::begin_set_filters(std::span<const SocketCanFilter> filters) {

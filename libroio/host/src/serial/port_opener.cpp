@@ -47,7 +47,7 @@ SerialPort PortOpener::open(const Deadline& deadline, const EventFlag& stop) {
 void PortOpener::find(const Deadline& deadline, const EventFlag& stop) {
   std::vector<std::string> ports = likely_ports();
   if (not_found_ && ports == searched_) {
-    throw *not_found_;
+    throw std::system_error(*not_found_);
   }
   searched_ = std::move(ports);
   try {
