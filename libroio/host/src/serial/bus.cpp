@@ -54,7 +54,7 @@ void SerialBus::await_session() {
     const std::system_error trouble = *known_trouble();
     lock.unlock();
     close();
-    throw trouble;
+    throw std::system_error(trouble);
   }
   // What has come so far came while the bridge was being set up.
   static_cast<void>(session_.take_arrived());
