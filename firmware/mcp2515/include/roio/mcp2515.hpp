@@ -296,6 +296,9 @@ class Mcp2515 {
         : Transaction(port, static_cast<uint8_t>(instruction)) {
       this->put(static_cast<uint8_t>(address));
     }
+    RegisterAccess(const RegisterAccess&) = delete;
+    RegisterAccess& operator=(const RegisterAccess&) = delete;
+    // In line, which a defaulted one is not always: NOLINTNEXTLINE(modernize-use-equals-default)
     ROIO_MCP2515_IN_LINE ~RegisterAccess() {}
   };
 
@@ -425,11 +428,12 @@ class Mcp2515 {
 #define ROIO_MCP2515_MEMBER(Type)                                             \
   template <typename Port, uint8_t RxQueue, uint8_t TxQueue, typename Traits> \
   Type Mcp2515<Port, RxQueue, TxQueue, Traits>
-/// And one that has one of its own.
+/// And one that has one of its own. NOLINTBEGIN(bugprone-macro-parentheses): it is a declaration.
 #define ROIO_MCP2515_MEMBER_OF(Argument, Type)                                \
   template <typename Port, uint8_t RxQueue, uint8_t TxQueue, typename Traits> \
   template <typename Argument>                                                \
   Type Mcp2515<Port, RxQueue, TxQueue, Traits>
+// NOLINTEND(bugprone-macro-parentheses)
 
 #include <roio/mcp2515_mode.hpp>
 #include <roio/mcp2515_receive.hpp>
