@@ -1,6 +1,7 @@
 // Clients that misbehave: the others lose nothing by it.
 #include <gtest/gtest.h>
 #include <poll.h>
+#include <sys/resource.h>
 #include <sys/socket.h>
 #include <unistd.h>
 
@@ -192,6 +193,62 @@ TEST_F(HostileClient, AnotherVersionIsToldSo) {
   ASSERT_EQ(take_record(rest, record), Split::record);
   ASSERT_EQ(record.type, RecordType::refused);
   EXPECT_EQ(record.as<Refused>().errc, static_cast<std::uint32_t>(Errc::version_mismatch));
+}
+
+// As many as a bus takes, each by its own number; not as buses, whose threads would be many.
+class Crowd {
+ public:
+  explicit Crowd(std::string name) : name_(std::move(name)) {
+    rlimit files{};
+    ::getrlimit(RLIMIT_NOFILE, &files);
+    files.rlim_cur = std::min<rlim_t>(files.rlim_max, 4096);
+    ::setrlimit(RLIMIT_NOFILE, &files);
+  }
+
+  // What the hub answers to one more.
+  RecordType add() {
+    Member member{Place(name_).find().value(), {}};
+    const std::uint64_t number = 10'000 + ++count_;
+    member.presence = Presence(member.hub.lock_path, number);
+    Buffer bytes;
+    append_record(bytes, Hello{magic, protocol_version, 0, number, 0, 0});
+    send_raw(member.hub.socket, bytes);
+    pollfd entry{member.hub.socket.get(), POLLIN, 0};
+    EXPECT_EQ(::poll(&entry, 1, 30'000), 1);
+    RecordHead head{};
+    EXPECT_EQ(::recv(member.hub.socket.get(), &head, sizeof head, 0),
+              static_cast<ssize_t>(sizeof head));
+    members_.push_back(std::move(member));
+    return head.type;
+  }
+  void drop_one() { members_.erase(members_.begin()); }
+
+ private:
+  struct Member {
+    Place::Hub hub;
+    Presence presence;
+  };
+  const std::string name_;
+  std::uint64_t count_ = 0;
+  std::vector<Member> members_;
+};
+
+TEST_F(HostileClient, ABusTakesSoManyProgramsAndTellsTheNextOne) {
+  Crowd crowd(name_);
+  for (std::size_t i = 2; i < max_clients; ++i) {  // two are there
+    ASSERT_EQ(crowd.add(), RecordType::welcome) << i;
+  }
+  EXPECT_EQ(crowd.add(), RecordType::refused);
+  try {
+    const auto bus = open("local:" + name_);
+    ADD_FAILURE() << "opened";
+  } catch (const std::system_error& error) {
+    EXPECT_EQ(std::string(error.what()),
+              "local:" + name_ + ": 256 programs are on the bus, as many as it takes");
+  }
+  expect_others_unharmed();
+  crowd.drop_one();
+  EXPECT_NO_THROW(open("local:" + name_)) << "once one has gone";
 }
 
 // One process neither reads nor writes, another is stopped altogether; a third keeps all it gets.

@@ -128,18 +128,6 @@ TEST(LocalBus, WhoseCarrierIsStoppedIsDownAndSaysWhich) {
   EXPECT_EQ(refusal(url), "(opened)");
 }
 
-TEST(LocalBus, TakesSoManyProgramsAndTellsTheNextOne) {
-  const std::string url = "local:" + unique_name();
-  std::vector<std::unique_ptr<Bus>> all;
-  for (std::size_t i = 0; i < local::max_clients; ++i) {
-    all.push_back(open(url, {.send_only = true, .open_timeout = 30s}));
-  }
-  EXPECT_EQ(refusal(url), url + ": 256 programs are on the bus, as many as it takes");
-  ASSERT_EQ(all.back()->send(Frame{1, FrameKind::standard, 0, {}}, 30s), Result::ok);
-  all.back().reset();
-  EXPECT_EQ(refusal(url), "(opened)") << "once one has gone";
-}
-
 TEST(LocalBus, TellsHowManyOthersListen) {
   const std::string name = "local:" + unique_name();
   const auto sender = open(name, {.send_only = true});

@@ -22,11 +22,11 @@ constexpr std::uint64_t fastest = 1'000'000;
 }  // namespace
 
 HubWords::HubWords(CLI::App& program)
-    : app_(program.add_subcommand("hub", "Carry a local bus until a signal")) {
+    : app_(program.add_subcommand("hub", "Carry a local bus until a signal")),
+      bitrate_(option(*app_, "--bitrate", bitrate_text_, "BPS",
+                      "Pace of the bus, 1000 to 1000000 bit/s (none: as fast as it goes)")) {
   prepare(*app_, "hub [OPTIONS] NAME", examples);
   without_type(app_->add_option("name", name_, "The bus: robot, or local:robot"));
-  bitrate_ = option(*app_, "--bitrate", bitrate_text_, "BPS",
-                    "Pace of the bus, 1000 to 1000000 bit/s (none: as fast as it goes)");
 }
 
 HubOptions HubWords::parse() const {
