@@ -31,7 +31,7 @@ std::ostream& operator<<(std::ostream& out, const Frame& frame);
 namespace roio::test {
 
 /// No test waits longer than this for what should come; it only ends tests that would hang.
-inline constexpr std::chrono::seconds guard{20};
+inline constexpr std::chrono::seconds guard{60};
 /// How long to listen for what should not come. Too short can only hide a fault, never make one up.
 inline constexpr std::chrono::milliseconds moment{30};
 
