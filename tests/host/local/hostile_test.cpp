@@ -257,7 +257,7 @@ TEST_F(HostileClient, NeverReadingCostsTheOthersNothing) {
   ASSERT_EQ(holder.line(), "open");
   Peer stopped({"hold", "local:" + name_});
   ASSERT_EQ(stopped.line(), "open");
-  stopped.signal(SIGSTOP);
+  stopped.stop();
   constexpr std::uint64_t count = 150'000;  // more than a queue holds
   std::jthread reader([this] {
     std::array<Received, 256> batch;

@@ -116,7 +116,7 @@ TEST(LocalBus, WhoseCarrierIsStoppedIsDownAndSaysWhich) {
   ASSERT_EQ(carrier.line(), "open");
   const auto bus = open(url, {.carry = Carry::never});
   EXPECT_EQ(bus->state(), BusState::active);
-  carrier.signal(SIGSTOP);
+  carrier.stop();
   for (int tries = 0; tries < 30000 && bus->state() == BusState::active; ++tries) {
     std::this_thread::sleep_for(1ms);
   }

@@ -121,7 +121,7 @@ Account stopped_over_two_hubs(std::uint64_t count) {
   EXPECT_EQ(killed.line(), "open");
   Peer reader({"listen", url});
   EXPECT_EQ(reader.line(), "open");
-  reader.signal(SIGSTOP);
+  reader.stop();
   const auto bus = open(url, {.send_only = true, .carry = Carry::never});
   expect_sent(*bus, 0, count / 3);
   killed.kill();

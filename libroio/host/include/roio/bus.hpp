@@ -93,15 +93,14 @@ struct Statistics {
   std::uint64_t error_frames = 0;   ///< Error reports of the controller.
   std::uint64_t bus_offs = 0;       ///< Times the controller went bus-off.
   std::uint64_t outages = 0;        ///< Times the bus was down or absent (BusState).
-  std::uint64_t resent = 0;  ///< Frames sent again, to who took over or as a bridge missed them.
-  std::uint64_t duplicates = 0;  ///< Frames come a second time after that, not delivered again.
-  std::uint64_t unsent = 0;      ///< Frames accepted by send() and not known to have gone when the
-                                 ///< bus was closed, or lost with a bridge; such that a bridge
-                                 ///< gave up, or cannot tell of.
-  std::uint64_t unheard = 0;     ///< Frames carried on a local bus while nobody else received.
-  std::uint64_t overruns = 0;    ///< Reports of a controller that it lost frames, how many unsaid.
-  std::uint64_t fd_frames = 0;   ///< CAN FD frames that passed the filters of a CAN interface; they
-                                 ///< are counted, and not returned.
+  std::uint64_t resent = 0;     ///< Frames sent again, to who took over or as a bridge missed them.
+  std::uint64_t unsent = 0;     ///< Frames accepted by send() and not known to have gone when the
+                                ///< bus was closed, or lost with a bridge; such that a bridge
+                                ///< gave up, or cannot tell of.
+  std::uint64_t unheard = 0;    ///< Frames carried on a local bus while nobody else received.
+  std::uint64_t overruns = 0;   ///< Reports of a controller that it lost frames, how many unsaid.
+  std::uint64_t fd_frames = 0;  ///< CAN FD frames that passed the filters of a CAN interface; they
+                                ///< are counted, and not returned.
 };
 
 /// Whether this program carries a local bus for all: one of those on it does.

@@ -95,10 +95,7 @@ void LocalBus::finish() {
     statistics_.unsent += outbox_.size();
     look_for_events();
     inbox_.end();
-  }
-  connector_.end_presence();
-  {
-    const std::lock_guard lock(mutex_);
+    connector_.end_presence();
     link_.reset();
   }
   connector_.leave();

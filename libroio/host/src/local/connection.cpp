@@ -7,7 +7,6 @@
 #include <array>
 #include <cerrno>
 #include <chrono>
-#include <random>
 #include <roio/error.hpp>
 #include <utility>
 
@@ -23,14 +22,8 @@ constexpr milliseconds takeover_time{200};
 constexpr milliseconds first_pause{1};
 constexpr milliseconds longest_pause{20};
 
-std::uint64_t random_client() {
-  std::random_device device;
-  return (std::uint64_t{device()} << 32) | device() | 1U;  // 0 is nobody's
-}
-
 /// @return false: the time is up, or stop is set.
-bool wait_readable(int fd, milliseconds limit, const Deadline& deadline, const EventFlag& stop) {
-  const auto timeout = std::min(limit, std::chrono::ceil<milliseconds>(deadline.remaining()));
+bool wait_readable(int fd, milliseconds timeout, const EventFlag& stop) {
   std::array<pollfd, 2> entries{{{fd, POLLIN, 0}, {stop.fd(), POLLIN, 0}}};
   return ::poll(entries.data(), entries.size(), static_cast<int>(timeout.count())) > 0 &&
          entries[1].revents == 0;
@@ -48,7 +41,7 @@ Connector::Connector(const std::string& bus_name, std::optional<std::uint32_t> b
     : bus_name_(bus_name),
       bitrate_bps_(bitrate_bps),
       carry_(carry),
-      client_(random_client()),
+      client_(random_number()),
       place_(bus_name) {}
 
 std::optional<Connection> Connector::connect(const Deadline& deadline, const EventFlag& stop) {
@@ -68,8 +61,7 @@ std::optional<Connection> Connector::connect(const Deadline& deadline, const Eve
     if (deadline.passed() && (taken_over.passed() || !is_between_hubs())) {
       break;
     }
-    static_cast<void>(
-        wait_readable(-1, pause, Deadline(std::max<Timeout>(deadline.remaining(), pause)), stop));
+    static_cast<void>(wait_readable(-1, pause, stop));
   }
   return std::nullopt;
 }
@@ -140,7 +132,7 @@ std::optional<Connection> Connector::greet(Place::Hub hub, const EventFlag& stop
     return std::nullopt;  // that hub is leaving
   }
   // Whatever the deadline: who asks without waiting is told of a bus that is there.
-  if (!wait_readable(stream.fd(), greeting_time, Deadline(forever), stop)) {
+  if (!wait_readable(stream.fd(), greeting_time, stop)) {
     silent_hub_ = hub.process;
     return std::nullopt;
   }

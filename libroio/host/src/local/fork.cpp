@@ -141,22 +141,24 @@ class ParentsBus final : public Bus {
 
 }  // namespace
 
-ParentsFd::ParentsFd(int fd) : fd_(fd) {
-  if (fd_ >= 0) {
-    Forks::instance().add(fd_);
+ParentsFd::ParentsFd(UniqueFd fd) : fd_(std::move(fd)) {
+  if (fd_) {
+    Forks::instance().add(fd_.get());
   }
 }
 
-ParentsFd::ParentsFd(ParentsFd&& other) noexcept : fd_(std::exchange(other.fd_, -1)) {}
-
 ParentsFd& ParentsFd::operator=(ParentsFd&& other) noexcept {
-  std::swap(fd_, other.fd_);
+  if (this != &other) {
+    reset();
+    fd_ = std::move(other.fd_);
+  }
   return *this;
 }
 
-ParentsFd::~ParentsFd() {
-  if (fd_ >= 0) {
-    Forks::instance().remove(fd_);
+void ParentsFd::reset() noexcept {
+  if (fd_) {
+    Forks::instance().remove(fd_.get());
+    fd_.reset();
   }
 }
 

@@ -3,26 +3,31 @@
 
 #include <memory>
 #include <roio/bus.hpp>
+#include <roio/parts/fd.hpp>
 
 /// fork() copies a program's buses, but not the threads that serve them, and what both then did
 /// with the same sockets and locks would end the parent's bus. So a bus stays the parent's: in the
 /// child it is as if closed, and the child holds nothing that belongs to it.
 namespace roio::local {
 
-/// Keeps a descriptor from children that fork() without exec() makes: there it is closed at once.
-/// The parent's locks are its own then, and end with it.
+/// Owns a descriptor that children which fork() without exec() makes do not have: there it is
+/// closed at once. The parent's locks are its own then, and end with it.
 class ParentsFd {
  public:
-  /// @param fd -1: none. Must stay open as long as this.
-  explicit ParentsFd(int fd = -1);
-  ParentsFd(ParentsFd&& other) noexcept;
+  ParentsFd() = default;
+  explicit ParentsFd(UniqueFd fd);
+  ParentsFd(ParentsFd&& other) noexcept = default;
   ParentsFd& operator=(ParentsFd&& other) noexcept;
   ParentsFd(const ParentsFd&) = delete;
   ParentsFd& operator=(const ParentsFd&) = delete;
-  ~ParentsFd();
+  ~ParentsFd() { reset(); }
+
+  [[nodiscard]] int get() const noexcept { return fd_.get(); }
+  explicit operator bool() const noexcept { return static_cast<bool>(fd_); }
+  void reset() noexcept;
 
  private:
-  int fd_;
+  UniqueFd fd_;
 };
 
 /// A bus that is closed in children of this process, and forgotten there when it ends.

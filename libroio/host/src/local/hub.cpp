@@ -87,8 +87,8 @@ void Hub::serve() {
 }
 
 void Hub::wait() {
-  if (std::exchange(accepting_, may_accept()) != may_accept()) {
-    if (accepting_) {
+  if (const bool accepts = may_accept(); std::exchange(accepting_, accepts) != accepts) {
+    if (accepts) {
       poller_.add(seat_.listener(), &seat_);
     } else {
       poller_.remove(seat_.listener());
@@ -212,40 +212,56 @@ void Hub::handle(HubClient& client, const Record& record) {
 }
 
 void Hub::greet(HubClient& client, const Hello& hello) {
-  const std::uint32_t bitrate = medium_->bitrate_bps().value_or(0);
-  const auto refuse = [&](Errc why) { client.refuse({static_cast<std::uint32_t>(why), bitrate}); };
   const bool is_alive = hello.client != 0 && is_present(seat_.lock_fd(), hello.client);
   if (hello.magic != magic || (hello.version == protocol_version && !is_alive)) {
     cut(client);
-  } else if (hello.version != protocol_version) {
-    refuse(Errc::version_mismatch);
-  } else if (hello.bitrate_bps != 0 && hello.bitrate_bps != bitrate) {
-    refuse(Errc::bitrate_mismatch);
-  } else if (hello.host == Hello::wants_the_seat && roster_.has_host_but(hello.client)) {
-    refuse(Errc::carried_already);
+  } else if (const auto why = objection_to(hello)) {
+    refuse(client, *why);
   } else if (hello.host == Hello::wants_the_seat) {
     // Its seat from now on. This hub goes, and that client finds it free.
     memory_->header.host.store(hello.client, std::memory_order_seq_cst);
     is_over_ = true;
   } else if (const bool fresh = !roster_.slot_of(hello.client);
-             auto slot = give_slot(hello.client)) {
+             const auto slot = give_slot(hello.client)) {
     if (hello.host == Hello::has_the_seat && !roster_.has_host_but(hello.client)) {
       memory_->header.host.store(hello.client, std::memory_order_seq_cst);
     }
-    medium_->drop_station_of(hello.client);
-    auto station = std::make_shared<Station>(hello.client, *slot);
-    const Welcome welcome{memory_->header.identity.load(std::memory_order_relaxed),
-                          static_cast<std::uint32_t>(*slot), bitrate, window(), fresh ? 1U : 0U};
-    if (!client.welcome(station, *slot, welcome)) {
-      cut(client);
-      return;
-    }
-    medium_->attach(std::move(station));
-    readers_.set_wake(*slot, &client.wake());
-    readers_.wake(*slot);  // the last hub may have died before it did
+    let_in(client, hello.client, *slot, fresh);
   } else {
-    refuse(Errc::bus_full);
+    refuse(client, Errc::bus_full);
   }
+}
+
+std::optional<Errc> Hub::objection_to(const Hello& hello) const {
+  if (hello.version != protocol_version) {
+    return Errc::version_mismatch;
+  }
+  if (hello.bitrate_bps != 0 && hello.bitrate_bps != medium_->bitrate_bps().value_or(0)) {
+    return Errc::bitrate_mismatch;
+  }
+  if (hello.host == Hello::wants_the_seat && roster_.has_host_but(hello.client)) {
+    return Errc::carried_already;
+  }
+  return std::nullopt;
+}
+
+void Hub::refuse(HubClient& client, Errc why) {
+  client.refuse({static_cast<std::uint32_t>(why), medium_->bitrate_bps().value_or(0)});
+}
+
+void Hub::let_in(HubClient& client, std::uint64_t number, std::size_t slot, bool fresh) {
+  medium_->drop_station_of(number);
+  auto station = std::make_shared<Station>(number, slot);
+  const Welcome welcome{memory_->header.identity.load(std::memory_order_relaxed),
+                        static_cast<std::uint32_t>(slot), medium_->bitrate_bps().value_or(0),
+                        window(), fresh ? 1U : 0U};
+  if (!client.welcome(station, slot, welcome)) {
+    cut(client);
+    return;
+  }
+  medium_->attach(std::move(station));
+  readers_.set_wake(slot, &client.wake());
+  readers_.wake(slot);  // the last hub may have died before it did
 }
 
 /// The one that it has, or a free one; none: there is none.
@@ -307,9 +323,10 @@ void Hub::transmit() {
   }
   if (carried > 0) {
     readers_.wake_for_news();
-    for (const std::size_t slot : std::exchange(done_, {})) {
+    for (const std::size_t slot : done_) {
       readers_.wake_for_done(slot);
     }
+    done_.clear();
   }
 }
 

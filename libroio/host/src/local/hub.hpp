@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <roio/error.hpp>
 #include <roio/parts/fd.hpp>
 #include <thread>
 #include <vector>
@@ -54,10 +55,13 @@ class Hub {
   // Clients.
   [[nodiscard]] bool may_accept() const;
   void accept_clients();
-  void read_clients();
   void read(HubClient& client);
   void handle(HubClient& client, const Record& record);
   void greet(HubClient& client, const Hello& hello);
+  [[nodiscard]] std::optional<Errc> objection_to(const Hello& hello) const;
+  void refuse(HubClient& client, Errc why);
+  /// @param fresh it has not had that slot before.
+  void let_in(HubClient& client, std::uint64_t number, std::size_t slot, bool fresh);
   void take_frame(HubClient& client, const OfferedFrame& offered);
   void cut(HubClient& client) noexcept;
   void let_go(HubClient& client);

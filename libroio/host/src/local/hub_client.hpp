@@ -21,7 +21,6 @@ class HubClient {
   HubClient(UniqueFd socket, TimePoint now) : stream_(std::move(socket)), since_(now) {}
 
   [[nodiscard]] Stream& stream() { return stream_; }
-  [[nodiscard]] const Stream& stream() const { return stream_; }
   [[nodiscard]] bool greeted() const { return station_ != nullptr; }
   /// It has been connected for a while, and has not said who it is.
   [[nodiscard]] bool greeting_overdue(TimePoint now) const;

@@ -45,13 +45,11 @@ Carried load(const LogEntry& entry) noexcept {
 
 std::array<std::uint64_t, lane_count> last_carried(const Memory& memory, std::uint64_t sender) {
   std::array<std::uint64_t, lane_count> last{};
-  const std::uint64_t head = memory.header.head.load(std::memory_order_acquire);
-  for (std::uint64_t i = first_whole(head); i <= head; ++i) {
-    const Carried carried = load(entry_of(memory, i));
+  for_each_whole(memory, [&](const Carried& carried) {
     if (carried.sender == sender) {
       last.at(carried.lane) = carried.sequence;
     }
-  }
+  });
   return last;
 }
 

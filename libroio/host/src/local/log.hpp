@@ -30,15 +30,19 @@ inline const LogEntry& entry_of(const Memory& memory, std::uint64_t number) noex
   return memory.log[number % log_size];
 }
 
-/// Up to where a sender's frames are in the log, in each lane; 0: none is. Leaves out the entry
-/// that a hub may have been writing when it was killed.
-std::array<std::uint64_t, lane_count> last_carried(const Memory& memory, std::uint64_t sender);
-
-/// The first number that is worth reading after a hub was killed: the entry before that may be half
-/// overwritten.
-inline std::uint64_t first_whole(std::uint64_t head) noexcept {
-  return head >= log_size ? head - log_size + 2 : 1;
+/// Calls visit(const Carried&) for what is in the log, but for the oldest that it has room for: in
+/// its place a hub may have been writing the next one when it was killed.
+template <typename Visit>
+void for_each_whole(const Memory& memory, const Visit& visit) {
+  const std::uint64_t head = memory.header.head.load(std::memory_order_acquire);
+  for (std::uint64_t i = head >= log_size ? head - log_size + 2 : 1; i <= head; ++i) {
+    visit(load(entry_of(memory, i)));
+  }
 }
+
+/// Up to where a sender's frames are in the log, in each lane, as far as for_each_whole() sees
+/// them; 0: none is.
+std::array<std::uint64_t, lane_count> last_carried(const Memory& memory, std::uint64_t sender);
 
 /// Where a reader is. When the log is about to run over what it has not read, the hub moves it on
 /// and counts what it wanted of that: both in one exchange, so that a frame is either read or

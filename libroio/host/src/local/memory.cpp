@@ -7,7 +7,6 @@
 
 #include <algorithm>
 #include <cerrno>
-#include <random>
 #include <system_error>
 #include <utility>
 
@@ -63,11 +62,7 @@ Mapping::~Mapping() {
 
 HubMemory::HubMemory(int lock_fd) {
   if (!has_size(lock_fd)) {
-    // Of another version, or none. All room is taken now: where there is none, a write into the
-    // mapping would end the process.
-    if (::ftruncate(lock_fd, 0) != 0) {
-      fail("the bus's memory");
-    }
+    // All room is taken now: where there is none, a write into the mapping would end the process.
     int error = EINTR;
     while (error == EINTR) {
       error = ::posix_fallocate(lock_fd, 0, sizeof(Memory));
@@ -90,8 +85,7 @@ void HubMemory::set_up(std::uint32_t bitrate_bps) {
   for (Slot& slot : (*this)->slots) {
     slot.client.store(0, std::memory_order_relaxed);
   }
-  std::random_device device;
-  header.identity.store((std::uint64_t{device()} << 32) | device(), std::memory_order_relaxed);
+  header.identity.store(random_number(), std::memory_order_relaxed);
   header.hubs.store(0, std::memory_order_relaxed);
   header.host.store(0, std::memory_order_relaxed);
   header.bitrate_bps.store(bitrate_bps, std::memory_order_relaxed);
@@ -102,6 +96,18 @@ void HubMemory::set_up(std::uint32_t bitrate_bps) {
 ClientMemory::ClientMemory(int lock_fd, std::size_t slot)
     : all_(lock_fd, 0, sizeof(Memory), false),
       own_(lock_fd, offsetof(Memory, slots) + slot * sizeof(Slot), sizeof(Slot), true) {}
+
+bool has_living_clients(const Memory& memory, int lock_fd) noexcept {
+  return std::any_of(memory.slots.begin(), memory.slots.end(), [lock_fd](const Slot& slot) {
+    const std::uint64_t client = slot.client.load(std::memory_order_relaxed);
+    return client != 0 && is_present(lock_fd, client);
+  });
+}
+
+std::uint64_t living_host(const Memory& memory, int lock_fd) noexcept {
+  const std::uint64_t host = memory.header.host.load(std::memory_order_relaxed);
+  return host != 0 && is_present(lock_fd, host) ? host : 0;
+}
 
 bool is_foreign_memory(int lock_fd) {
   struct stat status {};
@@ -131,20 +137,6 @@ void MemoryView::look(int lock_fd) {
     lock_fd_ = lock_fd;
     is_set_up_ = (*this)->header.magic.load(std::memory_order_acquire) == layout_magic;
   }
-}
-
-bool MemoryView::has_clients() const {
-  return is_set_up_ &&
-         std::any_of((*this)->slots.begin(), (*this)->slots.end(), [this](const Slot& slot) {
-           const std::uint64_t client = slot.client.load(std::memory_order_relaxed);
-           return client != 0 && is_present(lock_fd_, client);
-         });
-}
-
-std::uint64_t MemoryView::host() const {
-  const std::uint64_t host =
-      is_set_up_ ? (*this)->header.host.load(std::memory_order_relaxed) : std::uint64_t{0};
-  return host != 0 && is_present(lock_fd_, host) ? host : 0;
 }
 
 }  // namespace roio::local

@@ -96,8 +96,8 @@ class Mapping {
 /// The hub's view: all of it, to write.
 class HubMemory {
  public:
-  /// Gives the file its size where it has another; what is in it stays. Nobody else may do so at
-  /// the time: the caller holds the seat.
+  /// Gives the file its size where it is empty; what is in it stays. Nobody else may do so at the
+  /// time: the caller holds the seat.
   /// @throws std::system_error: no room in the file system.
   explicit HubMemory(int lock_fd);
 
@@ -127,6 +127,11 @@ class ClientMemory {
   Mapping own_;
 };
 
+/// Whether any client of the memory is alive. @param lock_fd of its file, where they show it.
+bool has_living_clients(const Memory& memory, int lock_fd) noexcept;
+/// The client that is there to carry the bus, while it is alive; 0: none.
+std::uint64_t living_host(const Memory& memory, int lock_fd) noexcept;
+
 /// Whether the file is of another version: its clients may have it mapped, so it must not change.
 bool is_foreign_memory(int lock_fd);
 
@@ -141,10 +146,13 @@ class MemoryView {
   [[nodiscard]] const Memory& operator*() const { return *static_cast<Memory*>(mapping_.at()); }
   [[nodiscard]] const Memory* operator->() const { return &**this; }
 
-  /// Whether any client is alive.
-  [[nodiscard]] bool has_clients() const;
-  /// The client that is there to carry the bus, while it is alive; 0: none.
-  [[nodiscard]] std::uint64_t host() const;
+  /// See has_living_clients(), living_host().
+  [[nodiscard]] bool has_clients() const {
+    return is_set_up_ && has_living_clients(**this, lock_fd_);
+  }
+  [[nodiscard]] std::uint64_t host() const {
+    return is_set_up_ ? living_host(**this, lock_fd_) : 0;
+  }
 
  private:
   void look(int lock_fd);

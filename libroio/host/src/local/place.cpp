@@ -17,6 +17,7 @@
 #include <utility>
 
 #include "local/memory.hpp"
+#include "local/presence.hpp"
 
 namespace roio::local {
 namespace {
@@ -65,13 +66,6 @@ UniqueFd make_socket() {
   return fd;
 }
 
-bool is_file_at(const UniqueFd& fd, const std::string& path) {
-  struct stat open {};
-  struct stat there {};
-  return ::fstat(fd.get(), &open) == 0 && ::stat(path.c_str(), &there) == 0 &&
-         open.st_ino == there.st_ino && open.st_dev == there.st_dev;
-}
-
 const sockaddr* generic(const sockaddr_un& address) {
   return reinterpret_cast<const sockaddr*>(&address);
 }
@@ -118,7 +112,6 @@ std::vector<std::string> folders() {
 
 HubSeat::HubSeat(UniqueFd lock, std::string lock_path, std::string socket_path)
     : lock_(std::move(lock)),
-      no_lock_in_children_(lock_.get()),
       lock_path_(std::move(lock_path)),
       socket_path_(std::move(socket_path)) {}
 
@@ -128,7 +121,7 @@ HubSeat::~HubSeat() {
 
 void HubSeat::open() {
   // Bound beside its place and moved there: who finds the socket finds it listening.
-  listener_ = make_socket();
+  listener_ = ParentsFd(make_socket());
   const std::string fresh = socket_path_ + ".new";
   const sockaddr_un address = address_of(fresh);
   ::unlink(fresh.c_str());
@@ -138,7 +131,6 @@ void HubSeat::open() {
       ::rename(fresh.c_str(), socket_path_.c_str()) != 0) {
     fail(socket_path_);
   }
-  no_listener_in_children_ = ParentsFd(listener_.get());
   struct stat there {};
   socket_file_ = ::lstat(socket_path_.c_str(), &there) == 0 ? there.st_ino : 0;
 }
@@ -150,7 +142,7 @@ bool HubSeat::is_in_place() const {
 }
 
 bool HubSeat::has_lock_in_place() const {
-  return is_file_at(lock_, lock_path_);
+  return is_file_at(lock_.get(), lock_path_);
 }
 
 void HubSeat::leave(bool remove_memory) noexcept {
@@ -164,10 +156,8 @@ void HubSeat::leave(bool remove_memory) noexcept {
       ::unlink(lock_path_.c_str());  // still locked: see Place::claim()
     }
   }
-  no_listener_in_children_ = ParentsFd();
   listener_.reset();
   ::flock(lock_.get(), LOCK_UN);  // the memory that is mapped from it would keep it otherwise
-  no_lock_in_children_ = ParentsFd();
   lock_.reset();
 }
 
@@ -187,11 +177,11 @@ std::optional<Place::Hub> Place::find() const {
 }
 
 std::optional<Place::Hub> Place::find_in(const std::string& folder) const {
-  UniqueFd socket = make_socket();
-  const sockaddr_un address = address_of(socket_path(folder, bus_name_));
   if (!is_private_folder(folder)) {
     return std::nullopt;
   }
+  UniqueFd socket = make_socket();
+  const sockaddr_un address = address_of(socket_path(folder, bus_name_));
   if (::connect(socket.get(), generic(address), sizeof address) != 0) {
     if (errno == ENOENT || errno == ECONNREFUSED || errno == EAGAIN || errno == EINTR) {
       return std::nullopt;
@@ -248,7 +238,7 @@ std::optional<HubSeat> Place::claim() const {
   }
   // Who held the lock before may have removed its file since it was opened here: then this lock is
   // on a file that nobody else will find.
-  if (!is_file_at(lock, path)) {
+  if (!is_file_at(lock.get(), path)) {
     return std::nullopt;
   }
   if (is_foreign_memory(lock.get())) {

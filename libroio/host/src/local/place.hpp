@@ -36,12 +36,10 @@ class HubSeat {
   void leave(bool remove_memory) noexcept;
 
  private:
-  UniqueFd lock_;
+  ParentsFd lock_;
   [[nodiscard]] bool has_lock_in_place() const;
 
-  UniqueFd listener_;
-  ParentsFd no_lock_in_children_;
-  ParentsFd no_listener_in_children_;
+  ParentsFd listener_;
   std::string lock_path_;
   std::string socket_path_;
   ino_t socket_file_ = 0;

@@ -26,23 +26,14 @@ Presence::Presence(const std::string& path, std::uint64_t client) {
   UniqueFd file(::open(path.c_str(), O_RDWR | O_CLOEXEC));
   struct flock lock = place_of(client);
   if (file && ::fcntl(file.get(), F_OFD_SETLK, &lock) == 0) {
-    file_ = std::move(file);
-    not_in_children_ = ParentsFd(file_.get());
+    file_ = ParentsFd(std::move(file));
   }
 }
 
 Presence& Presence::operator=(Presence&& other) noexcept {
   end();
   file_ = std::move(other.file_);
-  not_in_children_ = std::move(other.not_in_children_);
   return *this;
-}
-
-bool Presence::is_at(const std::string& path) const {
-  struct stat open {};
-  struct stat there {};
-  return shown() && ::fstat(fd(), &open) == 0 && ::stat(path.c_str(), &there) == 0 &&
-         open.st_ino == there.st_ino && open.st_dev == there.st_dev;
 }
 
 void Presence::end() {
@@ -52,9 +43,15 @@ void Presence::end() {
     all.l_type = F_UNLCK;
     all.l_whence = SEEK_SET;
     ::fcntl(file_.get(), F_OFD_SETLK, &all);
-    not_in_children_ = ParentsFd();
     file_.reset();
   }
+}
+
+bool is_file_at(int fd, const std::string& path) noexcept {
+  struct stat open {};
+  struct stat there {};
+  return ::fstat(fd, &open) == 0 && ::stat(path.c_str(), &there) == 0 &&
+         open.st_ino == there.st_ino && open.st_dev == there.st_dev;
 }
 
 bool is_present(int lock_fd, std::uint64_t client) {

@@ -9,6 +9,9 @@
 
 namespace roio::local {
 
+/// Whether the file that is open is the one at `path`.
+bool is_file_at(int fd, const std::string& path) noexcept;
+
 /// That a client is alive: a lock on the bus's lock file, at a place of its own, which the kernel
 /// gives back when its process ends. So a hub knows who is still to come over from the hub before,
 /// though it be stopped for an hour, and who never will.
@@ -23,7 +26,7 @@ class Presence {
   /// The lock file, open to read and write; -1 when not shown.
   [[nodiscard]] int fd() const { return file_.get(); }
   /// Whether that is what the file at `path` is.
-  [[nodiscard]] bool is_at(const std::string& path) const;
+  [[nodiscard]] bool is_at(const std::string& path) const { return is_file_at(fd(), path); }
   /// From now on the client is not there.
   void end();
 
@@ -34,8 +37,7 @@ class Presence {
   ~Presence() { end(); }
 
  private:
-  UniqueFd file_;
-  ParentsFd not_in_children_;
+  ParentsFd file_;
 };
 
 /// Whether the client shows its presence in the file.

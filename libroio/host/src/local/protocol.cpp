@@ -1,5 +1,6 @@
 #include "local/protocol.hpp"
 
+#include <random>
 #include <roio/header.hpp>
 
 namespace roio::local {
@@ -22,6 +23,11 @@ bool size_fits(RecordType type, std::size_t size) noexcept {
 }
 
 }  // namespace
+
+std::uint64_t random_number() {
+  std::random_device device;
+  return (std::uint64_t{device()} << 32) | device() | 1U;
+}
 
 std::size_t lane_of(const Frame& frame) noexcept {
   const bool urgent =

@@ -37,6 +37,9 @@ inline constexpr std::size_t max_filters = 512;  // as many as SocketCAN takes
 /// As the hub has it, for which a remote frame is never urgent.
 std::size_t lane_of(const Frame& frame) noexcept;
 
+/// For a client, or a bus: nobody else has it. Not 0.
+std::uint64_t random_number();
+
 enum class RecordType : std::uint8_t {
   hello = 1,
   frame = 3,

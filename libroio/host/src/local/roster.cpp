@@ -29,15 +29,13 @@ void Roster::note_done_from_log() {
   for (Slot& slot : memory_.slots) {
     slots.emplace(slot.client.load(std::memory_order_relaxed), &slot);
   }
-  const std::uint64_t head = memory_.header.head.load(std::memory_order_relaxed);
-  for (std::uint64_t i = first_whole(head); i <= head; ++i) {
-    const Carried carried = load(entry_of(memory_, i));
+  for_each_whole(memory_, [&slots](const Carried& carried) {
     if (const auto sender = slots.find(carried.sender); sender != slots.end()) {
       auto& done = sender->second->done.at(carried.lane);
       done.store(std::max(done.load(std::memory_order_relaxed), carried.sequence),
                  std::memory_order_relaxed);
     }
-  }
+  });
 }
 
 void Roster::free_dead(const Connected& connected) {
@@ -85,16 +83,9 @@ std::optional<std::size_t> Roster::take_free(std::uint64_t client) {
   return index;
 }
 
-bool Roster::has_anybody() const noexcept {
-  return std::any_of(memory_.slots.begin(), memory_.slots.end(), [this](const Slot& slot) {
-    const std::uint64_t client = slot.client.load(std::memory_order_relaxed);
-    return client != 0 && is_present(lock_fd_, client);
-  });
-}
-
 bool Roster::has_host_but(std::uint64_t client) const {
-  const std::uint64_t host = memory_.header.host.load(std::memory_order_relaxed);
-  return host != 0 && host != client && is_present(lock_fd_, host);
+  const std::uint64_t host = living_host(memory_, lock_fd_);
+  return host != 0 && host != client;
 }
 
 }  // namespace roio::local

@@ -33,7 +33,7 @@ class Roster {
   std::optional<std::size_t> take_free(std::uint64_t client);
 
   /// Whether anybody is alive, connected or not.
-  [[nodiscard]] bool has_anybody() const noexcept;
+  [[nodiscard]] bool has_anybody() const noexcept { return has_living_clients(memory_, lock_fd_); }
   /// Whether another than this client is there to carry the bus.
   [[nodiscard]] bool has_host_but(std::uint64_t client) const;
 

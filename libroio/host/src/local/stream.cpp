@@ -44,7 +44,6 @@ Split Stream::take(Record& record) {
 void Stream::close() {
   // A child that was forked just now may have it, too: the other end is to know all the same.
   ::shutdown(socket_.get(), SHUT_RDWR);
-  not_in_children_ = ParentsFd();
   socket_.reset();
 }
 

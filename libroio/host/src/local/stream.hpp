@@ -15,7 +15,7 @@ namespace roio::local {
 /// A non-blocking socket with the bytes on their way in and out.
 class Stream {
  public:
-  explicit Stream(UniqueFd socket) : socket_(std::move(socket)), not_in_children_(socket_.get()) {}
+  explicit Stream(UniqueFd socket) : socket_(std::move(socket)) {}
 
   [[nodiscard]] int fd() const { return socket_.get(); }
   [[nodiscard]] bool open() const { return static_cast<bool>(socket_); }
@@ -45,8 +45,7 @@ class Stream {
  private:
   void compact();
 
-  UniqueFd socket_;
-  ParentsFd not_in_children_;
+  ParentsFd socket_;
   Buffer in_;  // fixed size, once used; what came and was not taken is in_start_..in_end_
   std::size_t in_start_ = 0;
   std::size_t in_end_ = 0;
