@@ -1,7 +1,5 @@
 // Frames leave in the order in which they were given, urgent ones first; each once, and what became
 // of it is told truly.
-// Long, because tests/firmware/mutation compiles this one file against each driver that lacks a
-// rule, and the rules below need all of it.
 //
 // tests/firmware/mutation takes the driver's rules for that away one at a time, and sees these
 // tests fail:
@@ -21,12 +19,10 @@
 
 #include "rig.hpp"
 #include "seed.hpp"
+#include "sending.hpp"
 
 namespace roio::test {
 namespace {
-
-constexpr std::uint8_t queue = 32;
-using SendingRig = Rig<false, 0, queue>;
 
 /// The driver with two places for normal frames, and with six.
 template <typename Traits>
@@ -43,31 +39,6 @@ struct NameOfPlaces {
 };
 using AllPlaces = testing::Types<TestTraits, BackToBack>;
 TYPED_TEST_SUITE(TransmitOrderOf, AllPlaces, NameOfPlaces);
-
-std::vector<std::uint32_t> numbers_of(const std::vector<Frame>& frames) {
-  std::vector<std::uint32_t> numbers;
-  std::transform(frames.begin(), frames.end(), std::back_inserter(numbers), number_of);
-  return numbers;
-}
-
-std::vector<std::uint32_t> counting(std::uint32_t first, std::uint32_t count) {
-  std::vector<std::uint32_t> numbers;
-  for (std::uint32_t i = 0; i < count; ++i) {
-    numbers.push_back(first + i);
-  }
-  return numbers;
-}
-
-/// Polls as a program would until all is gone.
-template <typename AnyRig>
-void poll_until_idle(AnyRig& rig, sim::SimTime limit = std::chrono::seconds(1)) {
-  const sim::SimTime end = rig.bus.now() + limit;
-  while (rig.can.waiting() + rig.can.in_flight() > 0 && rig.bus.now() < end) {
-    ASSERT_EQ(rig.can.poll(), Status::ok);
-    rig.bus.run_for(microseconds(20));
-  }
-  EXPECT_EQ(rig.can.waiting() + rig.can.in_flight(), 0);
-}
 
 TYPED_TEST(TransmitOrderOf, ManyInARow) {
   for (std::uint32_t count = 1; count <= queue; ++count) {
@@ -435,7 +406,7 @@ constexpr auto name_of_trouble = [](const auto& row) { return std::string(row.pa
 INSTANTIATE_TEST_SUITE_P(All, TransmitTrouble, troubles, name_of_trouble);
 INSTANTIATE_TEST_SUITE_P(All, BackToBackTrouble, troubles, name_of_trouble);
 
-// --- abort ---------------------------------------------------------------------------------------
+// --- abort: more of it in abort_test.cpp ---------------------------------------------------------
 
 TEST(Abort, TakesBackWhatHasNotBegun) {
   SendingRig rig;
@@ -457,97 +428,6 @@ TEST(Abort, TakesBackWhatHasNotBegun) {
   EXPECT_EQ(rig.can.send(numbered(10), 10), Status::ok) << "and on again";
   poll_until_idle(rig);
   EXPECT_EQ(rig.can.traits().outcomes.back(), (Outcome{10, TxOutcome::sent}));
-}
-
-TEST(Abort, EndsAlsoForAProgramThatOnlySends) {
-  Rig<> rig;
-  rig.begin();
-  ASSERT_EQ(rig.can.send(numbered(1), 1), Status::ok);
-  rig.can.abort();
-  int tries = 0;
-  while (rig.can.send(numbered(2), 2) == Status::full && tries < 100) {
-    ++tries;
-    rig.bus.run_for(microseconds(20));
-  }
-  EXPECT_LT(tries, 100);
-}
-
-TEST(Abort, OfNothingChangesNothing) {
-  SendingRig rig;
-  rig.begin();
-  rig.can.abort();
-  EXPECT_EQ(rig.can.send(numbered(1), 1), Status::ok);
-  poll_until_idle(rig);
-  EXPECT_EQ(numbers_of(rig.peer_received), counting(1, 1));
-}
-
-TEST(Abort, FreesANodeThatNobodyAnswers) {
-  SendingRig rig;
-  rig.begin();
-  rig.peer.controller().set_mode(sim::Controller::Mode::off);
-  ASSERT_EQ(rig.can.send(numbered(1), 1), Status::ok);
-  rig.bus.run_for(milliseconds(100));
-  ASSERT_EQ(rig.can.poll(), Status::ok);
-  EXPECT_TRUE(rig.can.traits().outcomes.empty()) << "tried again and again";
-  rig.can.abort();
-  poll_until_idle(rig);
-  EXPECT_EQ(rig.can.traits().outcomes, (std::vector<Outcome>{{1, TxOutcome::aborted}}));
-}
-
-struct Picky : BackToBack {
-  [[nodiscard]] bool is_over(std::uint8_t token) const {
-    return std::find(over.begin(), over.end(), token) != over.end();
-  }
-  std::vector<std::uint8_t> over;
-};
-
-TEST(Abort, OfSomeLeavesTheOthersInTheirOrder) {
-  Rig<false, 0, queue, Picky> rig;
-  rig.begin();
-  rig.peer.controller().set_mode(sim::Controller::Mode::off);
-  for (std::uint8_t i = 0; i < 6; ++i) {
-    ASSERT_EQ(rig.can.send(numbered(i), i), Status::ok);
-  }
-  ASSERT_EQ(rig.can.send(numbered(6, 4, urgent_to_own), 6), Status::ok);  // 0, 1 and 6 in the chip
-  rig.can.traits().over = {0, 3};
-  rig.can.abort();
-  rig.bus.run_for(milliseconds(1));
-  ASSERT_EQ(rig.can.poll(), Status::ok);
-  ASSERT_EQ(rig.can.poll(), Status::ok);
-  EXPECT_EQ(rig.can.traits().outcomes,
-            (std::vector<Outcome>{{3, TxOutcome::aborted}, {0, TxOutcome::aborted}}));
-  rig.peer.controller().set_mode(sim::Controller::Mode::normal);
-  poll_until_idle(rig);
-  EXPECT_EQ(numbers_of(rig.peer_received), (std::vector<std::uint32_t>{6, 1, 2, 4, 5}));
-  EXPECT_EQ(rig.can.traits().outcomes.size(), 7U);
-  EXPECT_EQ(rig.can.counters().not_sent, 2U);
-  EXPECT_EQ(rig.can.counters().sent, 5U);
-}
-
-TEST(Abort, OfNoneOfThemTouchesNothing) {
-  Rig<false, 0, queue, Picky> rig;
-  rig.begin();
-  for (std::uint8_t i = 0; i < 5; ++i) {
-    ASSERT_EQ(rig.can.send(numbered(i), i), Status::ok);
-  }
-  rig.can.abort();
-  EXPECT_EQ(rig.can.send(numbered(5), 5), Status::ok);
-  poll_until_idle(rig);
-  EXPECT_EQ(numbers_of(rig.peer_received), counting(0, 6));
-}
-
-TEST(Abort, WhatIsToBeSentAgainIsUnknownWhenTheChipIsLostMeanwhile) {
-  Rig<false, 0, queue, Picky> rig;
-  rig.begin();
-  ASSERT_EQ(rig.can.send(numbered(0), 0), Status::ok);
-  ASSERT_EQ(rig.can.send(numbered(1), 1), Status::ok);
-  rig.bus.run_for(microseconds(50));  // 0 is on the wire, 1 in the chip
-  rig.can.traits().over = {0};
-  rig.can.abort();
-  ASSERT_EQ(rig.can.poll(), Status::ok);  // 1 is back, 0 not yet
-  ASSERT_EQ(rig.can.begin(plain_config()), Status::ok);
-  EXPECT_EQ(rig.can.traits().outcomes,
-            (std::vector<Outcome>{{0, TxOutcome::unknown}, {1, TxOutcome::unknown}}));
 }
 
 }  // namespace
