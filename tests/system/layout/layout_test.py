@@ -179,12 +179,12 @@ FORBIDDEN = [
     ("sim/src/avr/core.cpp", '#include "board/pins.hpp"'),
     ("sim/src/avr/core.cpp", "#include <roio/bus.hpp>"),
     ("sim/src/board/board.cpp", '#include "network/core.hpp"'),
-    ("tools/roio-cli/src/main.cpp", '#include "text/quote.hpp"'),  # tools know public headers
-    ("tools/roio-cli/src/main.cpp", "#include <roio/sim/time.hpp>"),
+    ("tools/roio-cli/src/program/main.cpp", '#include "text/quote.hpp"'),  # tools know public headers
+    ("tools/roio-cli/src/program/main.cpp", "#include <roio/sim/time.hpp>"),
     ("tools/roio-sim/src/main.cpp", '#include "board/pins.hpp"'),
     ("tools/roio-sim/src/main.cpp", "#include <roio/parts/waits.hpp>"),
     ("libroio/host/src/local/hub.cpp", '#include "local/no_such_file.hpp"'),  # and a typing mistake
-    ("tools/roio-cli/src/main.cpp", "#include <roio/no_such_file.hpp>"),
+    ("tools/roio-cli/src/program/main.cpp", "#include <roio/no_such_file.hpp>"),
 ]
 
 

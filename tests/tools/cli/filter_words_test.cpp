@@ -1,4 +1,4 @@
-#include "filter_words.hpp"
+#include "dump/filter_words.hpp"
 
 #include "seed.hpp"
 

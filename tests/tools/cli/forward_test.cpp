@@ -1,5 +1,5 @@
 // Forwarder: what it hands on, in which order, and what it counts as lost where.
-#include "forward.hpp"
+#include "attach/forward.hpp"
 
 #include <gtest/gtest.h>
 

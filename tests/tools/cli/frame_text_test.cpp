@@ -1,4 +1,4 @@
-#include "frame_text.hpp"
+#include "form/frame_text.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "input_line.hpp"
+#include "form/input_line.hpp"
 
 #include <gtest/gtest.h>
 #include <unistd.h>

@@ -8,7 +8,7 @@
 #include <roio/sim/can_bus.hpp>
 #include <vector>
 
-#include "exit_status.hpp"
+#include "program/exit_status.hpp"
 
 namespace roio::sim_tool {
 namespace {

@@ -5,7 +5,7 @@
 #include <string>
 #include <utility>
 
-#include "exit_status.hpp"
+#include "program/exit_status.hpp"
 
 namespace roio::sim_tool {
 namespace {

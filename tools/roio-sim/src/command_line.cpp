@@ -9,7 +9,7 @@
 #include <utility>
 
 #include "board_words.hpp"
-#include "exit_status.hpp"
+#include "program/exit_status.hpp"
 
 namespace roio::sim_tool {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <atomic>
 
-#include "process.hpp"
+#include "program/process.hpp"
 
 namespace roio::sim_tool {
 namespace {

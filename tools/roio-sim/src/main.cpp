@@ -4,9 +4,9 @@
 #include <variant>
 
 #include "command_line.hpp"
-#include "exit_status.hpp"
 #include "interrupt.hpp"
-#include "process.hpp"
+#include "program/exit_status.hpp"
+#include "program/process.hpp"
 #include "report.hpp"
 #include "simulation.hpp"
 #include "sketch.hpp"

@@ -11,7 +11,7 @@
 #include <system_error>
 #include <utility>
 
-#include "record_format.hpp"
+#include "form/record_format.hpp"
 
 namespace roio::sim_tool {
 namespace {

@@ -6,7 +6,7 @@
 #include <iterator>
 #include <nlohmann/json.hpp>
 
-#include "record_format.hpp"
+#include "form/record_format.hpp"
 
 namespace roio::sim_tool {
 namespace {

@@ -9,7 +9,7 @@
 #include <string>
 #include <string_view>
 
-#include "output.hpp"
+#include "program/output.hpp"
 
 namespace roio::sim_tool {
 

@@ -16,12 +16,12 @@
 
 #include "board_words.hpp"
 #include "bridge.hpp"
-#include "exit_status.hpp"
-#include "input_line.hpp"
+#include "form/input_line.hpp"
+#include "form/record_format.hpp"
 #include "interrupt.hpp"
 #include "pace.hpp"
 #include "panel.hpp"
-#include "record_format.hpp"
+#include "program/exit_status.hpp"
 #include "report.hpp"
 
 namespace roio::sim_tool {

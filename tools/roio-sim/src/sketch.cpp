@@ -15,8 +15,8 @@
 #include <system_error>
 #include <utility>
 
-#include "exit_status.hpp"
 #include "interrupt.hpp"
+#include "program/exit_status.hpp"
 
 namespace roio::sim_tool {
 namespace {

@@ -1,0 +1,206 @@
+#include "form/json_lines.hpp"
+
+#include <iterator>
+#include <nlohmann/json.hpp>
+#include <roio/json.hpp>
+#include <roio/message.hpp>
+#include <set>
+#include <string>
+#include <utility>
+
+#include "form/record_format.hpp"
+
+namespace roio::cli {
+namespace {
+
+const char* kind_name(FrameKind kind) {
+  switch (kind) {
+    case FrameKind::standard:
+      return "standard";
+    case FrameKind::standard_remote:
+      return "standard-remote";
+    case FrameKind::extended:
+      return "extended";
+    case FrameKind::extended_remote:
+      return "extended-remote";
+    case FrameKind::error:
+      break;
+  }
+  return "error";
+}
+
+// Messages are what parse_json() reads; whatever else happens on a bus has another type.
+class JsonFormat final : public RecordFormat {
+ public:
+  void frame(Buffer& out, const Received& received) override {
+    JsonMessage json;
+    if (to_message(received.frame, json.message) != Status::ok) {
+      foreign(out, received);
+      return;
+    }
+    json.has_source = true;
+    json.time = received.time;
+    const std::string line = to_json(json);
+    out.append(line.data(), line.data() + line.size());
+    out.push_back('\n');
+  }
+  void lost(Buffer& out, std::uint64_t count) override {
+    fmt::format_to(std::back_inserter(out), "{{\"type\":\"lost\",\"frames\":{}}}\n", count);
+  }
+  void not_shown(Buffer& out, std::uint64_t fd_frames) override {
+    fmt::format_to(std::back_inserter(out), "{{\"type\":\"CAN FD\",\"frames\":{}}}\n", fd_frames);
+  }
+  void state(Buffer& out, BusState state) override {
+    fmt::format_to(std::back_inserter(out), "{{\"type\":\"state\",\"state\":\"{}\"}}\n",
+                   to_string(state));
+  }
+
+ private:
+  static void foreign(Buffer& out, const Received& received) {
+    const Frame& frame = received.frame;
+    const std::size_t bytes = is_remote(frame.kind) ? 0 : std::min<std::size_t>(frame.length, 8);
+    const auto us =
+        std::chrono::duration_cast<std::chrono::microseconds>(received.time.time_since_epoch())
+            .count();
+    fmt::format_to(std::back_inserter(out),
+                   "{{\"type\":\"CAN\",\"kind\":\"{}\",\"id\":{},\"length\":{},\"data\":[{}],"
+                   "\"timestamp\":{}.{:06}}}\n",
+                   kind_name(frame.kind), frame.id, frame.length,
+                   fmt::join(frame.data, frame.data + bytes, ","), us / 1'000'000, us % 1'000'000);
+  }
+};
+
+// --- and back ------------------------------------------------------------------------------------
+
+using Json = nlohmann::json;
+
+ParseError field_error(const std::string& name, const std::string& what) {
+  return {"JSON field " + quote(name) + ": " + what, 0};
+}
+
+/// An object without a field twice; nothing for any other text.
+std::optional<Json> read_object(std::string_view line) {
+  std::set<std::string> seen;
+  bool twice = false;
+  Json json = Json::parse(
+      line.begin(), line.end(),
+      [&](int depth, Json::parse_event_t event, Json& value) {
+        if (event == Json::parse_event_t::key && depth == 1) {
+          twice = !seen.insert(value.get<std::string>()).second || twice;
+        }
+        return true;
+      },
+      false);
+  return json.is_object() && !twice ? std::optional(std::move(json)) : std::nullopt;
+}
+
+std::optional<FrameKind> read_kind(const Json& value) {
+  for (const FrameKind kind : {FrameKind::standard, FrameKind::standard_remote, FrameKind::extended,
+                               FrameKind::extended_remote, FrameKind::error}) {
+    if (value == kind_name(kind)) {
+      return kind;
+    }
+  }
+  return std::nullopt;
+}
+
+std::optional<std::uint64_t> read_whole(const Json& value, std::uint64_t largest) {
+  if (!value.is_number_unsigned() || value.get<std::uint64_t>() > largest) {
+    return std::nullopt;
+  }
+  return value.get<std::uint64_t>();
+}
+
+/// The data of a frame of that kind and length: as many bytes, or none of a remote request.
+std::optional<ParseError> read_data(const Json& value, Frame& frame) {
+  const std::size_t due = is_remote(frame.kind) ? 0 : frame.length;
+  if (!value.is_array() || value.size() != due) {
+    return field_error(
+        "data", "expected an array of " + count_of(due, "byte") + ", as kind and length say");
+  }
+  for (std::size_t i = 0; i < due; ++i) {
+    const auto byte = read_whole(value[i], 255);
+    if (!byte) {
+      return field_error("data", "expected integers 0..255");
+    }
+    frame.data[i] = static_cast<std::uint8_t>(*byte);
+  }
+  return std::nullopt;
+}
+
+/// A frame that is no message, as JsonFormat::foreign() writes it.
+Parsed<std::optional<Frame>> read_foreign(const Json& object) {
+  for (const char* name : {"kind", "id", "length", "data"}) {
+    if (!object.contains(name)) {
+      return field_error(name, "missing; a frame of type CAN has kind, id, length and data");
+    }
+  }
+  for (const auto& [name, value] : object.items()) {
+    if (name != "type" && name != "kind" && name != "id" && name != "length" && name != "data" &&
+        name != "timestamp") {
+      return field_error(name, "unknown in a frame of type CAN");
+    }
+  }
+  const auto kind = read_kind(object["kind"]);
+  if (!kind) {
+    return field_error("kind",
+                       "expected standard, standard-remote, extended, extended-remote or error");
+  }
+  if (*kind == FrameKind::error) {
+    return std::optional<Frame>();
+  }
+  const auto id = read_whole(object["id"], max_id(*kind));
+  if (!id) {
+    return field_error("id", "expected an integer 0.." + std::to_string(max_id(*kind)));
+  }
+  const auto length = read_whole(object["length"], max_data_length);
+  if (!length) {
+    return field_error("length", "expected an integer 0..8");
+  }
+  Frame frame{static_cast<std::uint32_t>(*id), *kind, static_cast<std::uint8_t>(*length), {}};
+  if (const auto error = read_data(object["data"], frame)) {
+    return *error;
+  }
+  return std::optional(frame);
+}
+
+/// What is of another type than a message; nothing when it is neither.
+std::optional<Parsed<std::optional<Frame>>> parse_other(std::string_view line) {
+  const auto object = read_object(line);
+  if (!object || !object->contains("type")) {
+    return std::nullopt;
+  }
+  const Json& type = (*object)["type"];
+  if (type == "CAN") {
+    return read_foreign(*object);
+  }
+  if (type == "lost" || type == "CAN FD" || type == "state") {
+    return std::optional<Frame>();
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
+Parsed<std::optional<Frame>> parse_json_line(std::string_view line, Address default_source) {
+  const auto json = parse_json(line);
+  if (!json) {
+    const auto other = parse_other(line);
+    return other ? *other : Parsed<std::optional<Frame>>(json.error());
+  }
+  Message message = json->message;
+  if (!json->has_source) {
+    message.header.source = default_source;
+  }
+  Frame frame{};
+  if (to_frame(message, frame) != Status::ok) {
+    return ParseError{"expected a message of class message, system or stream", 0};
+  }
+  return std::optional(frame);
+}
+
+std::unique_ptr<RecordFormat> json_format() {
+  return std::make_unique<JsonFormat>();
+}
+
+}  // namespace roio::cli

@@ -1,0 +1,134 @@
+#include "program/command_line.hpp"
+
+#include <CLI/CLI.hpp>
+#include <roio/version.hpp>
+#include <string_view>
+#include <vector>
+
+#include "bridge/words.hpp"
+#include "buses/hub_words.hpp"
+#include "dump/words.hpp"
+#include "program/words.hpp"
+#include "send/words.hpp"
+
+namespace roio::cli {
+namespace {
+
+constexpr const char* main_examples = R"(Examples:
+  roio-cli dump -n 1 local:robot &             one message, and end
+  roio-cli send --wait local:robot 0.2 5A2D00  three bytes to node 2 of subnet 0
+  roio-cli dump can0 to=0.2 urgent             urgent messages, on SocketCAN
+  roio-cli dump serial:auto                    a bridge on a serial port
+  roio-cli buses                               what there is to be opened
+  roio-cli bridge attach /dev/ttyACM0 vcan0    a bridge, for every Linux program
+
+BUS is a CAN interface (can0), serial:DEVICE, a bridge on a serial port, or
+local:NAME, a bus between the programs of one user on this machine;
+local:NAME?bitrate=500000 has the pace of a real one.
+Exit status: 0 done, 1 failed, 2 not a right command line, 128+N by signal N.
+More: man roio-cli, roio-cli help send, roio-cli help bridge set)";
+
+constexpr const char* buses_examples = R"(Examples:
+  roio-cli buses
+  roio-cli buses --json | jq -r 'select(.kind == "serial").bus'
+
+CAN interfaces, the local buses that some program is on, and bridges. To find
+those it opens the serial ports that an Arduino may be at and no other program
+has; that restarts most Arduinos. ROIO_SERIAL_PORTS=/dev/ttyUSB3 has it look
+there alone. A port without a bridge is listed with the reason.)";
+
+constexpr const char* help_examples = R"(Examples:
+  roio-cli help send
+  roio-cli help bridge set)";
+
+constexpr const char* commands = "send, dump, buses, hub, bridge or help";
+
+/// The words with `help COMMAND` said as `COMMAND --help`.
+std::vector<const char*> with_help(int argc, const char* const* argv) {
+  std::vector<const char*> words(argv, argv + argc);
+  if (words.size() > 1 && std::string_view(words[1]) == "help") {
+    words.erase(words.begin() + 1);
+    words.push_back("--help");
+  }
+  return words;
+}
+
+/// The command whose words were read last.
+const CLI::App& last_command(const CLI::App& app) {
+  const CLI::App* last = &app;
+  while (!last->get_subcommands().empty()) {
+    last = last->get_subcommands().front();
+  }
+  return *last;
+}
+
+/// What is wrong with the number of an option's values, as CLI11 names it.
+[[noreturn]] void refuse_values(const CLI::App& app, std::string_view what) {
+  std::string name(what.substr(0, what.find_first_of(": ")));
+  name.insert(0, name.starts_with('-') ? "" : "--");
+  const CLI::Option* const option = last_command(app).get_option_no_throw(name);
+  if (option != nullptr && option->get_items_expected_max() == 0) {
+    throw UsageError(name + ": expected no value after it");
+  }
+  if (option != nullptr && option->count() > 1) {
+    throw UsageError(name + ": given twice; expected once");
+  }
+  throw UsageError(name + ": expected a value after it");
+}
+
+}  // namespace
+
+Command parse_command_line(int argc, const char* const* argv) {
+  CLI::App app("Sends and shows Roio messages on a CAN bus, and looks after bridges.");
+  prepare(app, "send|dump|buses|hub|bridge [OPTIONS] ...", main_examples);
+  bool version = false;
+  app.add_flag("--version", version, "Print the version and end")->disable_flag_override();
+  app.require_subcommand(0, 1);
+  const SendWords send_words(app);
+  const DumpWords dump_words(app);
+  CLI::App& buses_app = *app.add_subcommand("buses", "List the buses that can be opened");
+  prepare(buses_app, "buses [OPTIONS]", buses_examples);
+  const CLI::Option* buses_json = flag(buses_app, "--json", "JSON lines");
+  const HubWords hub_words(app);
+  const BridgeWords bridge_words(app);
+  prepare(*app.add_subcommand("help", "Print the help of a command"), "help [COMMAND...]",
+          help_examples);
+
+  const std::vector<const char*> words = with_help(argc, argv);
+  try {
+    app.parse(static_cast<int>(words.size()), words.data());
+  } catch (const CLI::CallForHelp&) {
+    refuse_rest(app, "", commands);
+    bridge_words.refuse_unknown();
+    return Information{app.help()};
+  } catch (const CLI::ArgumentMismatch& error) {
+    refuse_values(app, error.what());
+  } catch (const CLI::ParseError& error) {
+    const auto parsed = app.get_subcommands();
+    refuse(parsed.empty() ? "" : parsed.front()->get_name(), error.what());
+  }
+  if (version) {
+    return Information{"roio-cli " ROIO_VERSION "\n"};
+  }
+  const bool is_alone = app.get_subcommands().empty();
+  refuse_rest(app, is_alone ? "" : last_command(app).get_name(), is_alone ? commands : nullptr);
+  if (send_words.parsed()) {
+    return send_words.parse();
+  }
+  if (dump_words.parsed()) {
+    return dump_words.parse();
+  }
+  if (buses_app.parsed()) {
+    refuse_rest(buses_app, "buses");
+    return BusesOptions{buses_json->count() > 0};
+  }
+  if (hub_words.parsed()) {
+    return hub_words.parse();
+  }
+  if (bridge_words.parsed()) {
+    return bridge_words.parse();
+  }
+  refuse("", std::string("expected a command: ") + commands);
+}
+
+}  // namespace roio::cli

@@ -1,0 +1,125 @@
+#include "program/interrupt.hpp"
+
+#include <fcntl.h>
+#include <poll.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <cerrno>
+#include <limits>
+#include <system_error>
+
+#include "program/exit_status.hpp"
+#include "program/process.hpp"
+
+namespace roio::cli {
+namespace {
+
+// All that a signal handler can reach.
+// NOLINTBEGIN(cppcoreguidelines-avoid-non-const-global-variables)
+std::atomic<int> caught{0};
+std::atomic<Bus*> watched{nullptr};
+std::atomic<bool> opening{false};
+std::array<int, 2> wake_pipe{-1, -1};
+// NOLINTEND(cppcoreguidelines-avoid-non-const-global-variables)
+static_assert(std::atomic<int>::is_always_lock_free && std::atomic<Bus*>::is_always_lock_free &&
+                  std::atomic<bool>::is_always_lock_free,
+              "a signal handler may use them");
+
+extern "C" void on_signal(int number) {
+  const int saved_errno = errno;
+  caught = number;
+  if (opening) {
+    ::_exit(exit_signal + number);
+  }
+  const char byte = 0;
+  // A full pipe has woken the reader already.
+  [[maybe_unused]] const ssize_t written = ::write(wake_pipe[1], &byte, 1);
+  if (Bus* bus = watched) {
+    bus->cancel();
+  }
+  errno = saved_errno;
+}
+
+enum class Woken { signal, readable, timeout };
+Woken wait_for(int fd, int timeout_ms) {
+  std::array<pollfd, 2> fds{{{wake_pipe[0], POLLIN, 0}, {fd, POLLIN, 0}}};
+  const int ready = ::poll(fds.data(), fds.size(), timeout_ms);
+  if (caught != 0) {
+    return Woken::signal;
+  }
+  return ready > 0 && fds[1].revents != 0 ? Woken::readable : Woken::timeout;
+}
+
+}  // namespace
+
+Interrupt::Interrupt() {
+  if (::pipe2(wake_pipe.data(), O_CLOEXEC | O_NONBLOCK) != 0) {
+    throw std::system_error(errno, std::generic_category(), "pipe");
+  }
+  caught = 0;
+  catch_interrupts(on_signal);
+}
+
+Interrupt::~Interrupt() {
+  release_interrupts();
+  for (int& fd : wake_pipe) {
+    ::close(fd);
+    fd = -1;
+  }
+}
+
+int Interrupt::signal() noexcept {
+  return caught;
+}
+
+bool Interrupt::sleep_until(std::chrono::steady_clock::time_point until) {
+  for (;;) {
+    const auto left =
+        std::chrono::ceil<std::chrono::milliseconds>(until - std::chrono::steady_clock::now());
+    if (left.count() <= 0) {
+      return caught == 0;
+    }
+    constexpr std::int64_t longest = std::numeric_limits<int>::max();
+    if (wait_for(-1, static_cast<int>(std::min<std::int64_t>(left.count(), longest))) ==
+        Woken::signal) {
+      return false;
+    }
+  }
+}
+
+bool Interrupt::wait_readable(int fd) {
+  Woken woken = Woken::timeout;
+  while (woken == Woken::timeout) {
+    woken = wait_for(fd, -1);
+  }
+  return woken == Woken::readable;
+}
+
+std::unique_ptr<Bus> open_until_signal(const std::string& url, const OpenOptions& options) {
+  struct Opening {
+    Opening() { opening = true; }
+    Opening(const Opening&) = delete;
+    Opening& operator=(const Opening&) = delete;
+    ~Opening() { opening = false; }
+  } const now;
+  if (caught != 0) {
+    ::_exit(exit_signal + caught);  // it came just before
+  }
+  return open(url, options);
+}
+
+CancelOnSignal::CancelOnSignal(Bus& bus) noexcept {
+  watched = &bus;
+  if (caught != 0) {
+    bus.cancel();  // it came before there was a bus
+  }
+}
+
+CancelOnSignal::~CancelOnSignal() {
+  watched = nullptr;
+}
+
+}  // namespace roio::cli

@@ -1,0 +1,59 @@
+/// roio-cli: a person's, and a script's, way onto a Roio bus. Documented in docs/cli.md.
+#include <string_view>
+#include <variant>
+
+#include "program/command_line.hpp"
+#include "program/exit_status.hpp"
+#include "program/interrupt.hpp"
+#include "program/output.hpp"
+#include "program/process.hpp"
+
+namespace roio::cli {
+namespace {
+
+int run(const Information& information) {
+  Buffer out;
+  out.append(std::string_view(information.text));
+  flush(out);
+  return exit_success;
+}
+// What runs until a signal, or for as long as a bus takes, ends cleanly by one.
+int run(const SendOptions& options) {
+  const Interrupt interrupt;
+  return send(options);
+}
+int run(const DumpOptions& options) {
+  const Interrupt interrupt;
+  return dump(options);
+}
+int run(const HubOptions& options) {
+  const Interrupt interrupt;
+  return hub(options);
+}
+int run(const BridgeAttachOptions& options) {
+  const Interrupt interrupt;
+  return bridge_attach(options);
+}
+// What is over in moments is just ended.
+int run(const BusesOptions& options) {
+  return buses(options);
+}
+int run(const BridgeShowOptions& options) {
+  return bridge_show(options);
+}
+int run(const BridgeSetOptions& options) {
+  return bridge_set(options);
+}
+int run(const BridgeIdentifyOptions& options) {
+  return bridge_identify(options);
+}
+
+}  // namespace
+}  // namespace roio::cli
+
+int main(int argc, char** argv) {
+  return roio::cli::run_process("roio-cli", [&] {
+    return std::visit([](const auto& command) { return roio::cli::run(command); },
+                      roio::cli::parse_command_line(argc, argv));
+  });
+}
