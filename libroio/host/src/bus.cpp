@@ -6,6 +6,7 @@
 #include <system_error>
 
 #include "local/bus.hpp"
+#include "parts/fork.hpp"
 #include "serial/bus.hpp"
 #include "socketcan/bus.hpp"
 
@@ -40,6 +41,18 @@ std::unique_ptr<Bus> open_interface(const std::string& name, const OpenOptions& 
     }
     throw std::system_error(error.code(), name + " (did you mean " + *meant + "?)");
   }
+}
+
+std::unique_ptr<Bus> open(const BusUrl& url, const OpenOptions& options) {
+  switch (url.kind) {
+    case BusUrl::Kind::local:
+      return open_local(url.target, url.bitrate, options);
+    case BusUrl::Kind::serial:
+      return open_serial(url, options);
+    case BusUrl::Kind::socketcan:
+      break;
+  }
+  return open_interface(url.target, options);
 }
 
 }  // namespace
@@ -81,15 +94,7 @@ std::unique_ptr<Bus> open(std::string_view url, const OpenOptions& options) {
   if (!parsed) {
     throw std::system_error(Errc::bad_url, parsed.error().message);
   }
-  switch (parsed->kind) {
-    case BusUrl::Kind::socketcan:
-      return open_interface(parsed->target, options);
-    case BusUrl::Kind::local:
-      return open_local(parsed->target, parsed->bitrate, options);
-    case BusUrl::Kind::serial:
-      return open_serial(*parsed, options);
-  }
-  throw std::system_error(Errc::not_supported, std::string(url));
+  return parents_bus(open(*parsed, options));
 }
 
 }  // namespace roio

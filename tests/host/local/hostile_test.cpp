@@ -25,13 +25,13 @@ using test::unique_name;
 
 constexpr Frame some_frame{0x1004A00A, FrameKind::extended, 1, {7}};
 
-void send_raw(const UniqueFd& socket, const Buffer& bytes) {
+void send_raw(const ParentsFd& socket, const Buffer& bytes) {
   ASSERT_EQ(::send(socket.get(), bytes.data(), bytes.size(), MSG_NOSIGNAL),
             static_cast<ssize_t>(bytes.size()));
 }
 
 // Whether the hub hangs up within a while.
-bool is_cut_off(const UniqueFd& socket) {
+bool is_cut_off(const ParentsFd& socket) {
   std::array<std::uint8_t, 4096> bytes{};
   for (;;) {
     pollfd entry{socket.get(), POLLIN, 0};
@@ -69,7 +69,7 @@ class HostileClient : public ::testing::Test {
   std::unique_ptr<Bus> sender_ = open("local:" + name_, {.send_only = true});
   Place::Hub hub_ = Place(name_).find().value();
   Presence presence_{hub_.lock_path, some_client};
-  UniqueFd socket_ = std::move(hub_.socket);
+  ParentsFd socket_ = std::move(hub_.socket);
 };
 
 TEST_F(HostileClient, GarbageInsteadOfAGreetingIsCutOff) {

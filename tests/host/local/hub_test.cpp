@@ -13,6 +13,7 @@
 #include <roio.hpp>
 #include <thread>
 
+#include "local/connection.hpp"
 #include "local/memory.hpp"
 #include "local/place.hpp"
 #include "process.hpp"
@@ -100,6 +101,30 @@ TEST(LocalBus, TwoAreNotThereToCarryIt) {
     EXPECT_EQ(std::string(error.what()), url + ": process " + std::to_string(host.pid()) +
                                              " (local_peer): another program is there to carry it");
   }
+}
+
+// A folder lies where it would put its socket. To ask again and again would take the bus, as often,
+// from who can carry it.
+TEST(LocalBus, WhoIsThereToCarryItAndCannotLeavesItToOthers) {
+  const std::string name = unique_name();
+  Peer first({"hold", "local:" + name});
+  ASSERT_EQ(first.line(), "open");
+  const std::string lock = local::Place(name).find()->lock_path;
+  const std::string in_the_way =
+      (std::filesystem::path(lock).parent_path() / (name + ".sock.new")).string();
+  ASSERT_TRUE(std::filesystem::create_directory(in_the_way));
+  local::Connector host(name, std::nullopt, Carry::always);
+  const EventFlag never;
+  EXPECT_THROW(static_cast<void>(host.connect(Deadline(30s), never)), std::system_error);
+  std::filesystem::remove(in_the_way);
+  ASSERT_TRUE(is_carried_by(name, first.pid()));
+  const auto hubs = [&] { return local::MemoryView(lock)->header.hubs.load(); };
+  const auto before = hubs();
+  for (int i = 0; i < 3; ++i) {
+    EXPECT_TRUE(host.connect(Deadline(30s), never));
+  }
+  EXPECT_EQ(hubs(), before);
+  EXPECT_TRUE(is_carried_by(name, first.pid()));
 }
 
 TEST(LocalBus, WithoutWaitingABusThatIsThereIsOpened) {

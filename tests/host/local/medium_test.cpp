@@ -137,6 +137,23 @@ TEST(Medium, BackToBackFramesFollowWithoutAGapThoughTheCallerIsLate) {
   EXPECT_FALSE(medium.next(late));
 }
 
+TEST(Medium, AfterALongStopItGoesOnFromNow) {
+  Medium medium(1'000'000);
+  const auto a = add_station(medium, 1);
+  const Frame frame = frame_to(2);
+  constexpr std::uint64_t offered = 5000;  // more than half a second's
+  for (std::uint64_t i = 1; i <= offered; ++i) {
+    offer(*a, frame, i);
+  }
+  medium.offered(start);
+  EXPECT_FALSE(medium.next(start));
+  const auto late = start + std::chrono::seconds(5);
+  const std::size_t at_once = tags_passed(medium, late).size();
+  const auto longest = std::chrono::milliseconds(100) / microseconds(wire_bits(frame));
+  EXPECT_EQ(at_once, static_cast<std::size_t>(longest) + 1) << "with the one that was on the wire";
+  EXPECT_GT(*medium.next_end(), late);
+}
+
 TEST(Medium, IdleTimeIsNotSavedUp) {
   Medium medium(1'000'000);
   const auto a = add_station(medium, 1);

@@ -4,6 +4,9 @@
 
 #include <gtest/gtest.h>
 
+#include <atomic>
+#include <thread>
+
 #include "local/log_reader.hpp"
 #include "memory_rig.hpp"
 
@@ -129,6 +132,26 @@ TEST_F(OneReader, IsMovedOnOnlyAsFarAsTheLogNeeds) {
   EXPECT_EQ(unpack(slot_.position).next, 1026U) << "a lot at once, so that it can read meanwhile";
   EXPECT_EQ(reader_.dropped(), 1025U);
   EXPECT_EQ(slot_.dropped, 1025U);
+}
+
+// A program that is broken, or means harm, changes its position all the time: the hub gets on.
+TEST_F(OneReader, WhosePositionNeverRestsHoldsNobodyUp) {
+  memory_.carry_many(log_size, 2);
+  std::atomic<bool> begun{false};
+  std::atomic<bool> over{false};
+  std::thread restless([&] {
+    for (std::uint64_t i = 0; !over; ++i) {
+      slot_.position =
+          pack({1 + (i >> 16) % 1000, static_cast<std::uint16_t>(i)});  // never twice the same soon
+      begun = true;
+    }
+  });
+  while (!begun) {
+  }
+  memory_.carry_many(20 * log_size, 2);
+  over = true;
+  restless.join();
+  EXPECT_EQ(memory_->header.head, 21 * log_size);
 }
 
 }  // namespace

@@ -163,8 +163,8 @@ class ROIO_EXPORT Bridge {
   virtual std::optional<BridgeReply> take_reply() = 0;
 };
 
-/// The bridge behind a bus that open("serial:...") returned; null for any other kind of bus. Lives
-/// as long as the bus.
+/// The bridge behind a bus that open("serial:...") returned; null for any other kind of bus,
+/// and in a child that fork() has made since. Lives as long as the bus.
 ROIO_EXPORT Bridge* bridge_of(Bus& bus) noexcept;
 
 /// A serial port where a bridge may be.

@@ -11,6 +11,9 @@
 /// state(), statistics() and take_events(). Two threads must not receive (or send) at the same
 /// time.
 ///
+/// fork(): a bus stays the parent's. In the child its calls return closed, its state is absent, and
+/// nothing that it does, its end included, reaches the parent's.
+///
 /// In somebody else's event loop nothing has to wait: fd() tells when to call receive(), event_fd()
 /// when to call take_events(), and each call that waits has a form that does not:
 ///

@@ -12,7 +12,6 @@
 #include <utility>
 #include <vector>
 
-#include "local/fork.hpp"
 #include "local/local_bus.hpp"
 
 namespace roio {
@@ -390,7 +389,7 @@ void LocalBus::make_room() {
 std::unique_ptr<Bus> open_local(const std::string& bus_name,
                                 std::optional<std::uint32_t> bitrate_bps,
                                 const OpenOptions& options) {
-  return local::parents_bus(std::make_unique<local::LocalBus>(bus_name, bitrate_bps, options));
+  return std::make_unique<local::LocalBus>(bus_name, bitrate_bps, options);
 }
 
 }  // namespace roio

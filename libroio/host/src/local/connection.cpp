@@ -19,6 +19,9 @@ using std::chrono::milliseconds;
 constexpr milliseconds greeting_time{500};
 // In which a bus whose hub has gone has another, or is left to one who is there for that.
 constexpr milliseconds takeover_time{200};
+// A host that could not carry the bus leaves it to others for so long: to ask for it all the time
+// would take it from them as often.
+constexpr std::chrono::seconds rest_time{10};
 constexpr milliseconds first_pause{1};
 constexpr milliseconds longest_pause{20};
 
@@ -46,6 +49,10 @@ Connector::Connector(const std::string& bus_name, std::optional<std::uint32_t> b
 
 std::optional<Connection> Connector::connect(const Deadline& deadline, const EventFlag& stop) {
   silent_hub_.reset();
+  if (hub_ && hub_->has_failed()) {
+    rests_.emplace(rest_time);
+    hub_.reset();
+  }
   const Deadline taken_over(takeover_time);
   for (milliseconds pause = first_pause; !stop.is_set();
        pause = std::min(pause * 2, longest_pause)) {
@@ -54,8 +61,7 @@ std::optional<Connection> Connector::connect(const Deadline& deadline, const Eve
         return connection;
       }
     } else if (auto seat = may_claim(taken_over) ? place_.claim() : std::nullopt) {
-      hub_ = std::make_unique<Hub>(std::move(*seat), bitrate_bps_,
-                                   carry_ == Carry::always ? client_ : 0);
+      carry(std::move(*seat));
       continue;
     }
     if (deadline.passed() && (taken_over.passed() || !is_between_hubs())) {
@@ -64,6 +70,18 @@ std::optional<Connection> Connector::connect(const Deadline& deadline, const Eve
     static_cast<void>(wait_readable(-1, pause, stop));
   }
   return std::nullopt;
+}
+
+/// @throws std::system_error: it cannot, for want of descriptors or threads. std::bad_alloc.
+void Connector::carry(HubSeat seat) {
+  try {
+    hub_ =
+        std::make_unique<Hub>(std::move(seat), bitrate_bps_, carry_ == Carry::always ? client_ : 0);
+    rests_.reset();
+  } catch (...) {
+    rests_.emplace(rest_time);
+    throw;
+  }
 }
 
 /// Whether this client may be the hub now. @param others_first how long it is left to another that
@@ -100,6 +118,9 @@ std::uint16_t Connector::wish_for_the_seat(const Place::Hub& hub) const {
       throw std::system_error(Errc::carried_already,
                               "local:" + bus_name_ + ": " + describe_process(hub.process));
     }
+    return 0;
+  }
+  if (rests_ && !rests_->passed()) {
     return 0;
   }
   return hub.process == ::getpid() ? Hello::has_the_seat : Hello::wants_the_seat;

@@ -56,6 +56,7 @@ class Connector {
   [[nodiscard]] std::uint16_t wish_for_the_seat(const Place::Hub& hub) const;
   [[nodiscard]] bool may_claim(const Deadline& others_first) const;
   [[nodiscard]] bool is_between_hubs() const;
+  void carry(HubSeat seat);
   std::optional<Connection> greet(Place::Hub hub, const EventFlag& stop);
   [[noreturn]] void throw_refused(const Refused& refused) const;
 
@@ -65,7 +66,8 @@ class Connector {
   std::uint64_t client_;
   Place place_;
   std::unique_ptr<Hub> hub_;
-  Presence presence_;  // from the first hub to the last
+  Presence presence_;              // from the first hub to the last
+  std::optional<Deadline> rests_;  // a host that could not carry the bus
   bool was_connected_ = false;
   std::optional<pid_t> silent_hub_;  // the one that did not answer
 };

@@ -72,7 +72,9 @@ void Hub::run() {
       serve();
     }
   } catch (const std::bad_alloc&) {
+    failed_ = true;
   } catch (const std::system_error&) {
+    failed_ = true;
   }
   leave();
 }
@@ -147,7 +149,9 @@ bool Hub::may_accept() const {
 
 void Hub::accept_clients() {
   while (may_accept()) {
-    UniqueFd socket(::accept4(seat_.listener(), nullptr, nullptr, SOCK_CLOEXEC | SOCK_NONBLOCK));
+    auto socket = ParentsFd::of([this] {
+      return UniqueFd(::accept4(seat_.listener(), nullptr, nullptr, SOCK_CLOEXEC | SOCK_NONBLOCK));
+    });
     if (!socket) {
       if (errno != EAGAIN) {
         accept_again_ = now_ + accept_pause;  // out of descriptors: they do not come back by asking

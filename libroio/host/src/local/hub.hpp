@@ -1,6 +1,7 @@
 #ifndef ROIO_LOCAL_HUB_HPP
 #define ROIO_LOCAL_HUB_HPP
 
+#include <atomic>
 #include <chrono>
 #include <cstdint>
 #include <memory>
@@ -40,6 +41,9 @@ class Hub {
   /// Leaves the seat. Frames that have not been carried are still with their senders, who offer
   /// them to the next hub.
   ~Hub();
+
+  /// It has left the seat because it lacked memory or descriptors. For any thread.
+  [[nodiscard]] bool has_failed() const noexcept { return failed_; }
 
  private:
   using Clock = std::chrono::steady_clock;
@@ -92,7 +96,8 @@ class Hub {
   bool accepting_ = true;            // the poller tells of new clients
   bool holding_ = false;             // for readers who lag
   bool is_over_ = false;  // another is to be the hub, or its files are not there any more
-  std::thread thread_;    // last: it uses all of the above
+  std::atomic<bool> failed_{false};
+  std::thread thread_;  // last: it uses all of the above
 };
 
 }  // namespace roio::local

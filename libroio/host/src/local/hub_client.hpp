@@ -18,7 +18,7 @@ class HubClient {
  public:
   using TimePoint = std::chrono::steady_clock::time_point;
 
-  HubClient(UniqueFd socket, TimePoint now) : stream_(std::move(socket)), since_(now) {}
+  HubClient(ParentsFd socket, TimePoint now) : stream_(std::move(socket)), since_(now) {}
 
   [[nodiscard]] Stream& stream() { return stream_; }
   [[nodiscard]] bool greeted() const { return station_ != nullptr; }

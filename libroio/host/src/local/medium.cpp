@@ -5,6 +5,13 @@
 #include <utility>
 
 namespace roio::local {
+namespace {
+
+// A process that was stopped for longer goes on from now: no real bus brings at once what it did
+// not carry meanwhile.
+constexpr std::chrono::milliseconds longest_catch_up{100};
+
+}  // namespace
 
 void Station::clear() {
   for (auto& lane : lanes_) {
@@ -57,7 +64,7 @@ void Medium::offered(TimePoint now) {
 
 std::optional<Medium::Transmission> Medium::next(TimePoint now) {
   if (!on_wire_) {
-    on_wire_ = arbitrate();
+    on_wire_ = arbitrate(now);
     if (!on_wire_) {
       contended_ = !all_empty();
       return std::nullopt;
@@ -83,7 +90,7 @@ std::optional<Medium::TimePoint> Medium::next_end() const {
 
 // The wire is taken from the moment it was idle and somebody had a frame, not from when this
 // process got round to it: so a late wake-up does not make the bus slower than its bit rate.
-std::optional<Medium::Transmission> Medium::arbitrate() {
+std::optional<Medium::Transmission> Medium::arbitrate(TimePoint now) {
   std::optional<std::size_t> winner;
   std::uint32_t lowest = 0;
   for (std::size_t i = 0; i < stations_.size(); ++i) {
@@ -107,6 +114,7 @@ std::optional<Medium::Transmission> Medium::arbitrate() {
   if (!detached_.empty()) {
     drop_detached();
   }
+  idle_since_ = std::max(idle_since_, now - longest_catch_up);
   std::chrono::nanoseconds duration{0};
   if (bitrate_bps_) {
     duration = std::chrono::nanoseconds(std::uint64_t{wire_bits(offer.frame)} * 1'000'000'000 /

@@ -84,7 +84,7 @@ class Medium {
   [[nodiscard]] std::optional<TimePoint> next_end() const;
 
  private:
-  std::optional<Transmission> arbitrate();
+  std::optional<Transmission> arbitrate(TimePoint now);
   [[nodiscard]] bool all_empty() const;
   void drop_detached();
 

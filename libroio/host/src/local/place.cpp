@@ -58,8 +58,9 @@ sockaddr_un address_of(const std::string& path) {
   return address;
 }
 
-UniqueFd make_socket() {
-  UniqueFd fd(::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0));
+ParentsFd make_socket() {
+  auto fd = ParentsFd::of(
+      [] { return UniqueFd(::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0)); });
   if (!fd) {
     fail("socket");
   }
@@ -68,6 +69,11 @@ UniqueFd make_socket() {
 
 const sockaddr* generic(const sockaddr_un& address) {
   return reinterpret_cast<const sockaddr*>(&address);
+}
+
+ParentsFd open_lock(const std::string& path, int flags) {
+  return ParentsFd::of(
+      [&] { return UniqueFd(::open(path.c_str(), flags | O_CLOEXEC, S_IRUSR | S_IWUSR)); });
 }
 
 std::string socket_path(const std::string& folder, const std::string& bus_name) {
@@ -110,7 +116,7 @@ std::vector<std::string> folders() {
   return folders(std::getenv("ROIO_RUNTIME_DIR"), "/run/user", "/tmp");
 }
 
-HubSeat::HubSeat(UniqueFd lock, std::string lock_path, std::string socket_path)
+HubSeat::HubSeat(ParentsFd lock, std::string lock_path, std::string socket_path)
     : lock_(std::move(lock)),
       lock_path_(std::move(lock_path)),
       socket_path_(std::move(socket_path)) {}
@@ -121,7 +127,7 @@ HubSeat::~HubSeat() {
 
 void HubSeat::open() {
   // Bound beside its place and moved there: who finds the socket finds it listening.
-  listener_ = ParentsFd(make_socket());
+  listener_ = make_socket();
   const std::string fresh = socket_path_ + ".new";
   const sockaddr_un address = address_of(fresh);
   ::unlink(fresh.c_str());
@@ -180,7 +186,7 @@ std::optional<Place::Hub> Place::find_in(const std::string& folder) const {
   if (!is_private_folder(folder)) {
     return std::nullopt;
   }
-  UniqueFd socket = make_socket();
+  ParentsFd socket = make_socket();
   const sockaddr_un address = address_of(socket_path(folder, bus_name_));
   if (::connect(socket.get(), generic(address), sizeof address) != 0) {
     if (errno == ENOENT || errno == ECONNREFUSED || errno == EAGAIN || errno == EINTR) {
@@ -196,7 +202,7 @@ std::optional<Place::Hub> Place::find_in(const std::string& folder) const {
 }
 
 bool Place::is_carried_in(const std::string& folder) const {
-  const UniqueFd lock(::open(lock_path(folder, bus_name_).c_str(), O_RDWR | O_CLOEXEC));
+  const ParentsFd lock = open_lock(lock_path(folder, bus_name_), O_RDWR);
   return lock && is_private_folder(folder) && ::flock(lock.get(), LOCK_EX | LOCK_NB) != 0;
 }
 
@@ -226,7 +232,7 @@ std::optional<HubSeat> Place::claim() const {
   }
   make_private_folder(folder);  // it may have been cleaned away
   const std::string path = lock_path(folder, bus_name_);
-  UniqueFd lock(::open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, S_IRUSR | S_IWUSR));
+  ParentsFd lock = open_lock(path, O_RDWR | O_CREAT);
   if (!lock) {
     fail(path);
   }

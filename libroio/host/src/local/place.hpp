@@ -4,11 +4,10 @@
 #include <sys/types.h>
 
 #include <optional>
-#include <roio/parts/fd.hpp>
 #include <string>
 #include <vector>
 
-#include "local/fork.hpp"
+#include "parts/fork.hpp"
 
 namespace roio::local {
 
@@ -16,7 +15,7 @@ namespace roio::local {
 /// dies.
 class HubSeat {
  public:
-  HubSeat(UniqueFd lock, std::string lock_path, std::string socket_path);
+  HubSeat(ParentsFd lock, std::string lock_path, std::string socket_path);
   HubSeat(HubSeat&&) noexcept = default;
   HubSeat& operator=(HubSeat&&) = delete;
   HubSeat(const HubSeat&) = delete;
@@ -68,7 +67,7 @@ class Place {
   explicit Place(const std::string& bus_name);
 
   struct Hub {
-    UniqueFd socket;
+    ParentsFd socket;
     std::string lock_path;
     pid_t process;
   };

@@ -23,10 +23,10 @@ struct flock place_of(std::uint64_t client) {
 }  // namespace
 
 Presence::Presence(const std::string& path, std::uint64_t client) {
-  UniqueFd file(::open(path.c_str(), O_RDWR | O_CLOEXEC));
+  auto file = ParentsFd::of([&] { return UniqueFd(::open(path.c_str(), O_RDWR | O_CLOEXEC)); });
   struct flock lock = place_of(client);
   if (file && ::fcntl(file.get(), F_OFD_SETLK, &lock) == 0) {
-    file_ = ParentsFd(std::move(file));
+    file_ = std::move(file);
   }
 }
 

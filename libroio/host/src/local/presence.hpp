@@ -2,10 +2,9 @@
 #define ROIO_LOCAL_PRESENCE_HPP
 
 #include <cstdint>
-#include <roio/parts/fd.hpp>
 #include <string>
 
-#include "local/fork.hpp"
+#include "parts/fork.hpp"
 
 namespace roio::local {
 

@@ -10,6 +10,9 @@ constexpr std::uint64_t lot = 1024;
 // Moving by fewer than this in one patience (some 10,000 frames a second, less than a saturated
 // 1 Mbit/s bus brings) does not count as reading: the others should not crawl along with it.
 constexpr std::uint64_t reading = 1024;
+// A reader moves on some thousand times a second at most; one whose position changes at each of so
+// many looks is none that reads.
+constexpr int most_tries = 64;
 
 }  // namespace
 
@@ -47,7 +50,7 @@ std::uint64_t Readers::take_away_from(std::size_t index, std::uint64_t number) {
   Slot& slot = memory_.slots.at(index);
   SlotFilters& filters = states_.at(index).filters;
   std::uint64_t word = slot.position.load(std::memory_order_acquire);
-  for (;;) {
+  for (int tries = 1;; ++tries) {
     const Position at = unpack(word);
     if (at.next > number) {
       return at.next;
@@ -62,8 +65,12 @@ std::uint64_t Readers::take_away_from(std::size_t index, std::uint64_t number) {
     }
     const std::uint64_t dropped =
         exact_dropped(at.dropped, slot.dropped.load(std::memory_order_relaxed)) + wanted;
-    if (slot.position.compare_exchange_strong(
-            word, pack({next, static_cast<std::uint16_t>(dropped)}), std::memory_order_acq_rel)) {
+    const std::uint64_t taken = pack({next, static_cast<std::uint16_t>(dropped)});
+    if (tries == most_tries) {
+      slot.position.store(taken, std::memory_order_release);
+    }
+    if (tries == most_tries ||
+        slot.position.compare_exchange_strong(word, taken, std::memory_order_acq_rel)) {
       slot.dropped.store(dropped, std::memory_order_release);
       return next;
     }

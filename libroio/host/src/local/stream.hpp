@@ -7,15 +7,15 @@
 #include <span>
 #include <utility>
 
-#include "local/fork.hpp"
 #include "local/protocol.hpp"
+#include "parts/fork.hpp"
 
 namespace roio::local {
 
 /// A non-blocking socket with the bytes on their way in and out.
 class Stream {
  public:
-  explicit Stream(UniqueFd socket) : socket_(std::move(socket)) {}
+  explicit Stream(ParentsFd socket) : socket_(std::move(socket)) {}
 
   [[nodiscard]] int fd() const { return socket_.get(); }
   [[nodiscard]] bool open() const { return static_cast<bool>(socket_); }

@@ -1,5 +1,7 @@
 #include <roio/bridge.hpp>
 
+#include "parts/fork.hpp"
+
 namespace roio {
 
 const char* to_string(BridgeBoard board) noexcept {
@@ -54,7 +56,7 @@ std::string to_string(const FirmwareVersion& version) {
 }
 
 Bridge* bridge_of(Bus& bus) noexcept {
-  return dynamic_cast<Bridge*>(&bus);
+  return dynamic_cast<Bridge*>(bus_itself(bus));
 }
 
 }  // namespace roio

@@ -84,7 +84,10 @@ bool would_wait() {
 }  // namespace
 
 SerialPort::SerialPort(const std::string& path, const std::string& name, std::uint32_t rate_bps)
-    : fd_(::open(path.c_str(), O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC)), rate_bps_(rate_bps) {
+    : fd_(ParentsFd::of([&] {
+        return UniqueFd(::open(path.c_str(), O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC));
+      })),
+      rate_bps_(rate_bps) {
   if (!fd_) {
     const std::error_code code = reason(errno);
     fail(code == Errc::port_not_permitted ? name + " (" + how_to_be_permitted(path) + ")" : name,

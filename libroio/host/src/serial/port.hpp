@@ -4,9 +4,10 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
-#include <roio/parts/fd.hpp>
 #include <span>
 #include <string>
+
+#include "parts/fork.hpp"
 
 namespace roio::serial {
 
@@ -35,7 +36,7 @@ class SerialPort {
   std::optional<std::size_t> write(std::span<const std::uint8_t> bytes) const;
 
  private:
-  UniqueFd fd_;
+  ParentsFd fd_;
   std::uint32_t rate_bps_;
 };
 

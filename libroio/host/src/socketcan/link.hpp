@@ -15,6 +15,8 @@
 #include <system_error>
 #include <vector>
 
+#include "parts/fork.hpp"
+
 namespace roio::socketcan {
 
 /// A raw socket and the interface that it belongs to, through all that happens to the interface:
@@ -78,7 +80,7 @@ class Link {
 
   const std::string name_;
   BusEvents& events_;
-  const UniqueFd socket_;
+  const ParentsFd socket_;
   const UniqueFd news_;
 
   std::mutex mutex_;  // all below, but the atomics

@@ -74,8 +74,9 @@ bool ask(int socket, unsigned long request, const std::string& name, ifreq& answ
 
 }  // namespace
 
-UniqueFd make_socket(const std::string& interface_name) {
-  UniqueFd socket(::socket(PF_CAN, SOCK_RAW | SOCK_NONBLOCK | SOCK_CLOEXEC, CAN_RAW));
+ParentsFd make_socket(const std::string& interface_name) {
+  auto socket = ParentsFd::of(
+      [] { return UniqueFd(::socket(PF_CAN, SOCK_RAW | SOCK_NONBLOCK | SOCK_CLOEXEC, CAN_RAW)); });
   if (!socket) {
     if (errno == EAFNOSUPPORT || errno == EPROTONOSUPPORT) {
       throw std::system_error(Errc::no_can_support, interface_name);

@@ -8,6 +8,8 @@
 #include <span>
 #include <string>
 
+#include "parts/fork.hpp"
+
 /// The system calls that set up SocketCAN, one idea each. Errors are thrown as std::system_error
 /// about the interface, unless a function says otherwise.
 namespace roio::socketcan {
@@ -23,7 +25,7 @@ struct InterfaceLook {
 /// A non-blocking raw socket with time stamps, drop counts and error reports, large in receiving
 /// and small in sending; bound to nothing yet.
 /// @throws Errc::no_can_support
-UniqueFd make_socket(const std::string& interface_name);
+ParentsFd make_socket(const std::string& interface_name);
 
 /// Becomes readable when any interface comes, goes or changes. @see discard_news
 UniqueFd make_news_socket(const std::string& interface_name);

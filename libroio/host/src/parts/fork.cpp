@@ -1,4 +1,4 @@
-#include "local/fork.hpp"
+#include "parts/fork.hpp"
 
 #include <pthread.h>
 #include <unistd.h>
@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-namespace roio::local {
+namespace roio {
 namespace {
 
 // How often this process is a child of one that had buses; and what its parent keeps for itself.
@@ -22,12 +22,10 @@ class Forks {
     return *forks;
   }
 
-  void add(int fd) {
-    const std::lock_guard lock(mutex_);
-    fds_.push_back(fd);
-  }
+  std::mutex& mutex() { return mutex_; }
+  // Under a NoFork.
+  void add(int fd) { fds_.push_back(fd); }
   void remove(int fd) {
-    const std::lock_guard lock(mutex_);
     if (const auto found = std::find(fds_.begin(), fds_.end(), fd); found != fds_.end()) {
       fds_.erase(found);
     }
@@ -129,9 +127,10 @@ class ParentsBus final : public Bus {
   }
   [[nodiscard]] const std::string& name() const noexcept override { return name_; }
 
- private:
   [[nodiscard]] bool is_ours() const noexcept { return Forks::instance().count() == forks_; }
+  [[nodiscard]] Bus& inner() const noexcept { return *bus_; }
 
+ private:
   std::unique_ptr<Bus> bus_;
   const unsigned forks_;
   const std::string name_;
@@ -141,7 +140,15 @@ class ParentsBus final : public Bus {
 
 }  // namespace
 
-ParentsFd::ParentsFd(UniqueFd fd) : fd_(std::move(fd)) {
+NoFork::NoFork() {
+  Forks::instance().mutex().lock();
+}
+
+NoFork::~NoFork() {
+  Forks::instance().mutex().unlock();
+}
+
+ParentsFd::ParentsFd(const NoFork& /*holds the mutex*/, UniqueFd fd) : fd_(std::move(fd)) {
   if (fd_) {
     Forks::instance().add(fd_.get());
   }
@@ -157,6 +164,7 @@ ParentsFd& ParentsFd::operator=(ParentsFd&& other) noexcept {
 
 void ParentsFd::reset() noexcept {
   if (fd_) {
+    const NoFork no_fork;
     Forks::instance().remove(fd_.get());
     fd_.reset();
   }
@@ -166,4 +174,12 @@ std::unique_ptr<Bus> parents_bus(std::unique_ptr<Bus> bus) {
   return std::make_unique<ParentsBus>(std::move(bus));
 }
 
-}  // namespace roio::local
+Bus* bus_itself(Bus& bus) noexcept {
+  const auto* const parents = dynamic_cast<const ParentsBus*>(&bus);
+  if (parents == nullptr) {
+    return &bus;
+  }
+  return parents->is_ours() ? &parents->inner() : nullptr;
+}
+
+}  // namespace roio
