@@ -22,7 +22,7 @@ WRONG = [
     ("--foo", 'unknown option "--foo"; `roio-cli --help` shows how'),
     # send: what is missing
     ("send", "expected BUS, DEST and DATA" + SEND_HELP),
-    ("send local:x", "expected DEST after BUS: SUBNET.NODE, SUBNET.*, ID#DATA or -" + SEND_HELP),
+    ("send local:x", "expected DEST after BUS: a place, SUBNET.NODE, SUBNET.*, ID#DATA or -" + SEND_HELP),
     ("send local:x 0.2 --count", "--count: expected a value after it"),
     # send: the bus
     ("send local: 0.2",

@@ -40,7 +40,7 @@ std::unique_ptr<RecordFormat> make_format(const DumpOptions& options) {
     case DumpOptions::Form::log:
       return log_format(name_in_log(options.bus));
     case DumpOptions::Form::json:
-      return json_format();
+      return json_format(nullptr);
     case DumpOptions::Form::text:
       break;
   }

@@ -30,8 +30,8 @@ InputLine line_of(const Frame& frame, const std::string& interface_name = {}) {
                                         : InputLine{InputLine::Kind::frame, frame, interface_name};
 }
 
-Parsed<InputLine> from_json(std::string_view line, Address default_source) {
-  const auto frame = parse_json_line(line, default_source);
+Parsed<InputLine> from_json(std::string_view line, Address default_source, const Robot* robot) {
+  const auto frame = parse_json_line(line, default_source, robot);
   if (!frame) {
     return frame.error();
   }
@@ -81,14 +81,15 @@ bool is_blank(std::string_view line) noexcept {
   return line.find_first_not_of(white_space) == std::string_view::npos;
 }
 
-Parsed<InputLine> parse_input_line(std::string_view line, Address default_source) {
+Parsed<InputLine> parse_input_line(std::string_view line, Address default_source,
+                                   const Robot* robot) {
   if (const auto error = check_line(line)) {
     return *error;
   }
   const std::size_t first = std::min(line.find_first_not_of(white_space), line.size());
   const std::string_view text = line.substr(first, line.find_last_not_of(white_space) + 1 - first);
   if (text.starts_with('{')) {
-    return from_json(line, default_source);
+    return from_json(line, default_source, robot);
   }
   if (text.starts_with('(')) {
     return from_log(text);

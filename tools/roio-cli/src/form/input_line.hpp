@@ -7,6 +7,7 @@
 #include <optional>
 #include <roio/address.hpp>
 #include <roio/frame.hpp>
+#include <roio/robot.hpp>
 #include <roio/text.hpp>
 #include <string>
 #include <string_view>
@@ -27,8 +28,10 @@ struct InputLine {
 /// Reads one line that is not blank. "{" begins JSON as `dump --json` writes it (a message's source
 /// is `default_source` when it names none), "(" a line of a log, whatever its time, and "#", ";" or
 /// "//" a comment; else it is a frame as cansend takes it.
+/// @param robot whose names a line of JSON may have; null: none.
 /// @return an error says what was expected.
-Parsed<InputLine> parse_input_line(std::string_view line, Address default_source);
+Parsed<InputLine> parse_input_line(std::string_view line, Address default_source,
+                                   const Robot* robot = nullptr);
 
 bool is_blank(std::string_view line) noexcept;
 

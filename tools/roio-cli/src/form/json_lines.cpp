@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 #include <roio/json.hpp>
 #include <roio/message.hpp>
+#include <roio/robot_json.hpp>
 #include <set>
 #include <string>
 #include <utility>
@@ -32,6 +33,8 @@ const char* kind_name(FrameKind kind) {
 // Messages are what parse_json() reads; whatever else happens on a bus has another type.
 class JsonFormat final : public RecordFormat {
  public:
+  explicit JsonFormat(std::shared_ptr<const Robot> robot) : robot_(std::move(robot)) {}
+
   void frame(Buffer& out, const Received& received) override {
     JsonMessage json;
     if (to_message(received.frame, json.message) != Status::ok) {
@@ -40,7 +43,7 @@ class JsonFormat final : public RecordFormat {
     }
     json.has_source = true;
     json.time = received.time;
-    const std::string line = to_json(json);
+    const std::string line = robot_ ? to_json(json, *robot_) : to_json(json);
     out.append(line.data(), line.data() + line.size());
     out.push_back('\n');
   }
@@ -68,6 +71,8 @@ class JsonFormat final : public RecordFormat {
                    kind_name(frame.kind), frame.id, frame.length,
                    fmt::join(frame.data, frame.data + bytes, ","), us / 1'000'000, us % 1'000'000);
   }
+
+  std::shared_ptr<const Robot> robot_;
 };
 
 // --- and back ------------------------------------------------------------------------------------
@@ -182,8 +187,9 @@ std::optional<Parsed<std::optional<Frame>>> parse_other(std::string_view line) {
 
 }  // namespace
 
-Parsed<std::optional<Frame>> parse_json_line(std::string_view line, Address default_source) {
-  const auto json = parse_json(line);
+Parsed<std::optional<Frame>> parse_json_line(std::string_view line, Address default_source,
+                                             const Robot* robot) {
+  const auto json = robot != nullptr ? parse_json(line, *robot) : parse_json(line);
   if (!json) {
     const auto other = parse_other(line);
     return other ? *other : Parsed<std::optional<Frame>>(json.error());
@@ -199,8 +205,8 @@ Parsed<std::optional<Frame>> parse_json_line(std::string_view line, Address defa
   return std::optional(frame);
 }
 
-std::unique_ptr<RecordFormat> json_format() {
-  return std::make_unique<JsonFormat>();
+std::unique_ptr<RecordFormat> json_format(std::shared_ptr<const Robot> robot) {
+  return std::make_unique<JsonFormat>(std::move(robot));
 }
 
 }  // namespace roio::cli

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <memory>
 #include <roio/bus.hpp>
+#include <roio/robot.hpp>
 #include <string>
 
 #include "form/frame_text.hpp"
@@ -35,8 +36,9 @@ std::unique_ptr<RecordFormat> text_format(TimeColumn::Mode time, bool colour);
 std::unique_ptr<RecordFormat> log_format(std::string interface_name);
 
 /// One JSON object a line (json_lines.cpp).
+/// @param robot whose names messages have beside their bytes; null: none.
 /// @throws UsageError: this roio-cli was built without JSON.
-std::unique_ptr<RecordFormat> json_format();
+std::unique_ptr<RecordFormat> json_format(std::shared_ptr<const Robot> robot);
 
 /// "1 frame", "2 frames".
 std::string count_of(std::uint64_t count, const char* what);

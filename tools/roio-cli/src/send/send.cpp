@@ -145,8 +145,8 @@ struct Unsent {
 /// Standard input, line by line.
 class LineSender {
  public:
-  LineSender(const std::string& bus, Sender& sender, Address default_source)
-      : bus_(bus), sender_(sender), default_source_(default_source), reader_(STDIN_FILENO) {}
+  LineSender(const SendOptions& options, Sender& sender)
+      : options_(options), sender_(sender), reader_(STDIN_FILENO) {}
 
   [[nodiscard]] const Unsent& unsent() const { return unsent_; }
 
@@ -175,7 +175,7 @@ class LineSender {
   }
 
   void take(std::string_view line) {
-    const auto parsed = parse_input_line(line, default_source_);
+    const auto parsed = parse_input_line(line, options_.source, options_.robot.get());
     if (!parsed) {
       refuse(parsed.error());
       return;
@@ -204,7 +204,7 @@ class LineSender {
     }
     note("line " + std::to_string(line_number_) + ": the log is of several interfaces, " +
          quote(interface_) + " and " + quote(name) + " among them; the frames of all are sent to " +
-         bus_);
+         options_.bus);
     several_are_told_ = true;
   }
 
@@ -224,9 +224,8 @@ class LineSender {
     return going;
   }
 
-  const std::string& bus_;
+  const SendOptions& options_;
   Sender& sender_;
-  Address default_source_;
   LineReader reader_;
   std::vector<Frame> pending_;
   std::uint64_t line_number_ = 0;
@@ -239,7 +238,7 @@ Unsent send_lines(const SendOptions& options, Sender& sender) {
   if (::isatty(STDIN_FILENO) == 1) {
     note("reading JSON messages or log lines; Ctrl-D ends");
   }
-  LineSender lines(options.bus, sender, options.source);
+  LineSender lines(options, sender);
   lines.run();
   return lines.unsent();
 }

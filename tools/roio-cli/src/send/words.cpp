@@ -6,7 +6,10 @@
 #include <roio/message.hpp>
 #include <roio/text.hpp>
 #include <span>
+#include <utility>
 
+#include "names/message_words.hpp"
+#include "names/robot.hpp"
 #include "program/words.hpp"
 
 namespace roio::cli {
@@ -76,8 +79,9 @@ bool is_frame(const std::string& destination) {
 
 SendWords::SendWords(CLI::App& program)
     : app_(program.add_subcommand("send", "Send a message, or lines of them")),
+      robot_(*app_),
       dec_(flag(*app_, "--dec", "DATA are decimal numbers, one a byte: 90 45 0")),
-      from_(option(*app_, "--from", from_text_, "SUBNET.NODE", "Source address (default 0.10)")),
+      from_(option(*app_, "--from", from_text_, "ADDRESS", "Who sends, SUBNET.NODE or a place (default 0.10)")),
       urgent_(flag(*app_, "--urgent", "Ahead of normal messages")),
       message_class_(
           option(*app_, "--class", class_text_, "NAME", "message (default), system or stream")),
@@ -94,11 +98,26 @@ SendWords::SendWords(CLI::App& program)
   wait_ = app_->add_flag("--wait{10000}", wait_text_, "Wait until somebody listens on a local bus");
 }
 
-SendOptions SendWords::parse_options() const {
+// BUS may be left out where the robot names one: then the first word says where to.
+SendWords::Said SendWords::said(const Robot* robot) const {
+  const bool is_destination =
+      robot != nullptr && !robot->bus.empty() && !bus_.empty() &&
+      (bus_ == "-" || is_frame(bus_) || robot->address_of(bus_));
+  if (!is_destination) {
+    return {bus_, destination_, data_};
+  }
+  Said said{bus_of(*robot), bus_, data_};
+  if (!destination_.empty()) {
+    said.data.insert(said.data.begin(), destination_);
+  }
+  return said;
+}
+
+SendOptions SendWords::parse_options(const Robot* robot) const {
   constexpr std::uint64_t most = std::numeric_limits<std::uint32_t>::max();
   SendOptions options;
   if (from_->count() > 0) {
-    options.source = value_or_refuse(parse_source(from_text_), "--from: ");
+    options.source = parse_sender(robot, from_text_, "--from: ");
   }
   options.count = parse_number("--count", count_text_, 0, most);
   options.interval = parse_ms("--interval", interval_text_, 0);
@@ -113,31 +132,36 @@ SendOptions SendWords::parse_options() const {
 SendOptions SendWords::parse() const {
   refuse_rest(*app_, "send");
   // First the options: in `send --count local:robot 0.2`, what is wrong is not that BUS is missing.
-  SendOptions options = parse_options();
-  if (bus_.empty()) {
+  auto robot = robot_.find();
+  SendOptions options = parse_options(robot.get());
+  const Said words = said(robot.get());
+  options.robot = std::move(robot);
+  if (words.bus.empty()) {
     refuse("send", "expected BUS, DEST and DATA");
   }
-  if (destination_.empty()) {
-    refuse("send", "expected DEST after BUS: SUBNET.NODE, SUBNET.*, ID#DATA or -");
+  if (words.destination.empty()) {
+    refuse("send", "expected DEST after BUS: a place, SUBNET.NODE, SUBNET.*, ID#DATA or -");
   }
-  options.bus = parse_bus(bus_);
-  if (options.wait && parse_bus_url(bus_)->kind != BusUrl::Kind::local) {
-    throw UsageError("--wait: expected with local:NAME alone; on " + bus_ +
+  options.bus = parse_bus(words.bus);
+  if (options.wait && parse_bus_url(words.bus)->kind != BusUrl::Kind::local) {
+    throw UsageError("--wait: expected with local:NAME alone; on " + words.bus +
                      " nobody can tell who listens");
   }
-  if (destination_ == "-") {
-    refuse_with("DEST -", "each line of the input", true);
+  if (words.destination == "-") {
+    refuse_with(words, "DEST -", "each line of the input", true);
     return options;
   }
   if (interval_->count() > 0 && count_->count() == 0) {
     throw UsageError("--interval: expected with --count N (0: until interrupted)");
   }
-  options.frame = is_frame(destination_) ? parse_frame() : parse_message(options.source);
+  options.frame =
+      is_frame(words.destination) ? parse_frame(words) : parse_message(words, options);
   return options;
 }
 
 // Which options make no sense with what says everything itself.
-void SendWords::refuse_with(const char* what, const char* who, bool count_too) const {
+void SendWords::refuse_with(const Said& said, const char* what, const char* who,
+                            bool count_too) const {
   std::vector<const CLI::Option*> options{dec_, urgent_, message_class_};
   options.push_back(count_too ? count_ : from_);
   for (const CLI::Option* option : options) {
@@ -146,29 +170,43 @@ void SendWords::refuse_with(const char* what, const char* who, bool count_too) c
                        " says its own");
     }
   }
-  if (!data_.empty()) {
+  if (!said.data.empty()) {
     throw UsageError(std::string("DATA: expected none after ") + what + ", as " + who +
                      " has its own");
   }
 }
 
-Frame SendWords::parse_frame() const {
-  const Frame frame = value_or_refuse(parse_frame_text(destination_));
+Frame SendWords::parse_frame(const Said& said) const {
+  const Frame frame = value_or_refuse(parse_frame_text(said.destination));
   if (frame.kind == FrameKind::error) {
-    throw UsageError("frame " + quote(destination_) +
+    throw UsageError("frame " + quote(said.destination) +
                      ": a controller's error report; expected a frame to send");
   }
-  refuse_with("ID#DATA", "the frame", false);
+  refuse_with(said, "ID#DATA", "the frame", false);
   return frame;
 }
 
-Frame SendWords::parse_message(Address source) const {
+// By name, where the robot has one; else as bytes.
+Bytes SendWords::parse_data(const Said& said, const SendOptions& options,
+                            Address destination) const {
+  if (dec_->count() > 0) {
+    return parse_decimal(said.data);
+  }
+  const bool may_have_names = options.robot && message_class_->count() == 0;
+  const auto named =
+      may_have_names
+          ? value_or_refuse(parse_message_words(*options.robot, options.source, destination, said.data))
+          : std::nullopt;
+  return named ? *named : parse_hexadecimal(said.data);
+}
+
+Frame SendWords::parse_message(const Said& said, const SendOptions& options) const {
   Message message{};
-  message.header.destination = value_or_refuse(parse_address(destination_));
-  message.header.source = source;
+  message.header.destination = parse_destination(options.robot.get(), said.destination);
+  message.header.source = options.source;
   message.header.priority = urgent_->count() > 0 ? Priority::urgent : Priority::normal;
   message.header.message_class = parse_sendable_class(class_text_);
-  const Bytes bytes = dec_->count() > 0 ? parse_decimal(data_) : parse_hexadecimal(data_);
+  const Bytes bytes = parse_data(said, options, message.header.destination);
   message.length = bytes.length;
   std::copy(bytes.data.begin(), bytes.data.end(), message.data);
   Frame frame{};
