@@ -38,7 +38,7 @@ std::unique_ptr<RecordFormat> log_format(std::string interface_name);
 /// One JSON object a line (json_lines.cpp).
 /// @param robot whose names messages have beside their bytes; null: none.
 /// @throws UsageError: this roio-cli was built without JSON.
-std::unique_ptr<RecordFormat> json_format(std::shared_ptr<const Robot> robot);
+std::unique_ptr<RecordFormat> json_format(std::shared_ptr<const Robot> robot = nullptr);
 
 /// "1 frame", "2 frames".
 std::string count_of(std::uint64_t count, const char* what);
