@@ -19,7 +19,7 @@ Parsed<std::optional<Frame>> parse_json_line(std::string_view /*line*/,
   return ParseError{no_json, 0};
 }
 
-std::unique_ptr<RecordFormat> json_format() {
+std::unique_ptr<RecordFormat> json_format(bool /*with_bus*/) {
   refuse_json();
 }
 
