@@ -17,7 +17,7 @@ namespace roio::cli {
 /// @return the frame; none: an error report, a loss or a state, which cannot be sent; or what was
 ///         expected, or that this build knows no JSON.
 Parsed<std::optional<Frame>> parse_json_line(std::string_view line, Address default_source,
-                                             const Robot* robot);
+                                             const Robot* robot = nullptr);
 
 }  // namespace roio::cli
 

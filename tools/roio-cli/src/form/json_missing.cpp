@@ -14,12 +14,13 @@ constexpr const char* no_json = "this roio-cli was built without JSON (ROIO_BUIL
 
 }  // namespace
 
-Parsed<std::optional<Frame>> parse_json_line(std::string_view /*line*/,
-                                             Address /*default_source*/, const Robot* /*robot*/) {
+Parsed<std::optional<Frame>> parse_json_line(std::string_view /*line*/, Address /*default_source*/,
+                                             const Robot* /*robot*/) {
   return ParseError{no_json, 0};
 }
 
-std::unique_ptr<RecordFormat> json_format(std::shared_ptr<const Robot> /*robot*/) {
+std::unique_ptr<RecordFormat> json_format(bool /*with_bus*/,
+                                          std::shared_ptr<const Robot> /*robot*/) {
   refuse_json();
 }
 

@@ -10,7 +10,7 @@ namespace roio::cli {
 
 RobotOption::RobotOption(CLI::App& command)
     : option_(option(command, "--robot", text_, "FILE",
-                     "Names from this robot file (default: $ROIO_ROBOT, robot.json around here)")) {
+                     "Robot file with the names (or none); see below")) {
 }
 
 std::shared_ptr<const Robot> RobotOption::find() const {
@@ -18,12 +18,12 @@ std::shared_ptr<const Robot> RobotOption::find() const {
 }
 
 Address parse_destination(const Robot* robot, const std::string& text) {
-  return value_or_refuse(robot != nullptr ? robot->address_of(text) : parse_address(text));
+  return value_or_refuse(address_of(robot, text));
 }
 
 Address parse_sender(const Robot* robot, const std::string& text, const char* option) {
-  const Place* const place = robot != nullptr ? robot->find(text) : nullptr;
-  return place != nullptr ? place->address : value_or_refuse(parse_source(text), option);
+  const Address address = value_or_refuse(address_of(robot, text), option);
+  return is_broadcast(address) ? value_or_refuse(parse_source(text), option) : address;
 }
 
 }  // namespace roio::cli

@@ -10,6 +10,8 @@
 namespace roio::cli {
 namespace {
 
+constexpr const char* no_robot = "none";
+
 /// @return none: nobody said; empty: none is wanted.
 std::optional<std::filesystem::path> named_file(const std::optional<std::string>& option) {
   if (option) {
@@ -27,7 +29,7 @@ std::shared_ptr<const Robot> find_robot(const std::optional<std::string>& option
   if (!file) {
     file = find_robot_file(std::filesystem::current_path(no_folder));
   }
-  if (!file || file->empty()) {
+  if (!file || file->empty() || *file == no_robot) {
     return nullptr;
   }
   auto robot = load_robot(*file, {{share_folder() / "kinds"}});
@@ -35,6 +37,10 @@ std::shared_ptr<const Robot> find_robot(const std::optional<std::string>& option
     throw UsageError(robot.error().message);
   }
   return std::make_shared<const Robot>(*robot);
+}
+
+Parsed<Address> address_of(const Robot* robot, const std::string& text) {
+  return robot != nullptr ? robot->address_of(text) : parse_address(text);
 }
 
 std::string bus_of(const Robot& robot) {

@@ -6,6 +6,7 @@
 #include <chrono>
 #include <memory>
 #include <roio/bus.hpp>
+#include <span>
 #include <string>
 
 namespace roio::cli {
@@ -28,6 +29,11 @@ class Interrupt {
   /// Waits without limit until fd can be read (or is at its end).
   /// @return false when a signal ended the wait.
   [[nodiscard]] static bool wait_readable(int fd);
+
+  /// Waits until one of them can be read, for at most so long.
+  /// @return false when the time has passed or a signal came.
+  [[nodiscard]] static bool wait_readable(std::span<const int> fds,
+                                          std::chrono::nanoseconds timeout);
 };
 
 /// Opens a bus. A signal meanwhile ends the process at once, with 128 and its number: open() may

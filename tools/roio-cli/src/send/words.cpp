@@ -8,7 +8,7 @@
 #include <span>
 #include <utility>
 
-#include "names/message_words.hpp"
+#include "names/named_data.hpp"
 #include "names/robot.hpp"
 #include "program/words.hpp"
 
@@ -75,13 +75,18 @@ bool is_frame(const std::string& destination) {
   return destination.find('#') != std::string::npos;
 }
 
+bool is_destination(const Robot* robot, const std::string& word) {
+  return word == "-" || is_frame(word) || address_of(robot, word);
+}
+
 }  // namespace
 
 SendWords::SendWords(CLI::App& program)
     : app_(program.add_subcommand("send", "Send a message, or lines of them")),
       robot_(*app_),
       dec_(flag(*app_, "--dec", "DATA are decimal numbers, one a byte: 90 45 0")),
-      from_(option(*app_, "--from", from_text_, "ADDRESS", "Who sends, SUBNET.NODE or a place (default 0.10)")),
+      from_(option(*app_, "--from", from_text_, "ADDRESS",
+                   "Who sends, SUBNET.NODE or a place (default 0.10)")),
       urgent_(flag(*app_, "--urgent", "Ahead of normal messages")),
       message_class_(
           option(*app_, "--class", class_text_, "NAME", "message (default), system or stream")),
@@ -100,10 +105,11 @@ SendWords::SendWords(CLI::App& program)
 
 // BUS may be left out where the robot names one: then the first word says where to.
 SendWords::Said SendWords::said(const Robot* robot) const {
-  const bool is_destination =
-      robot != nullptr && !robot->bus.empty() && !bus_.empty() &&
-      (bus_ == "-" || is_frame(bus_) || robot->address_of(bus_));
-  if (!is_destination) {
+  const bool may_be_left_out = robot != nullptr && !robot->bus.empty() && !bus_.empty();
+  if (!may_be_left_out || !is_destination(robot, bus_)) {
+    if (may_be_left_out && !is_destination(robot, destination_)) {
+      static_cast<void>(parse_destination(robot, bus_));  // neither is: the first is misspelt
+    }
     return {bus_, destination_, data_};
   }
   Said said{bus_of(*robot), bus_, data_};
@@ -154,8 +160,7 @@ SendOptions SendWords::parse() const {
   if (interval_->count() > 0 && count_->count() == 0) {
     throw UsageError("--interval: expected with --count N (0: until interrupted)");
   }
-  options.frame =
-      is_frame(words.destination) ? parse_frame(words) : parse_message(words, options);
+  options.frame = is_frame(words.destination) ? parse_frame(words) : parse_message(words, options);
   return options;
 }
 
@@ -193,10 +198,9 @@ Bytes SendWords::parse_data(const Said& said, const SendOptions& options,
     return parse_decimal(said.data);
   }
   const bool may_have_names = options.robot && message_class_->count() == 0;
-  const auto named =
-      may_have_names
-          ? value_or_refuse(parse_message_words(*options.robot, options.source, destination, said.data))
-          : std::nullopt;
+  const auto named = may_have_names ? value_or_refuse(parse_named_data(
+                                          *options.robot, options.source, destination, said.data))
+                                    : std::nullopt;
   return named ? *named : parse_hexadecimal(said.data);
 }
 

@@ -1,4 +1,4 @@
-#include "names/message_words.hpp"
+#include "names/named_data.hpp"
 
 #include <vector>
 
@@ -28,16 +28,16 @@ Parsed<NamedValue> parse_field_word(const MessageKind& message, const std::strin
   }
   const auto value = parse_value(*field, std::string_view(word).substr(sign + 1));
   if (!value) {
-    return ParseError{message.name + ": " + value.error().message, 0};
+    return ParseError{message.name + "." + value.error().message, 0};  // its field comes first
   }
   return NamedValue{name, *value};
 }
 
 }  // namespace
 
-Parsed<std::optional<Bytes>> parse_message_words(const Robot& robot, Address source,
-                                                 Address destination,
-                                                 std::span<const std::string> words) {
+Parsed<std::optional<Bytes>> parse_named_data(const Robot& robot, Address source,
+                                              Address destination,
+                                              std::span<const std::string> words) {
   if (words.empty()) {
     return std::optional<Bytes>();
   }
@@ -56,7 +56,7 @@ Parsed<std::optional<Bytes>> parse_message_words(const Robot& robot, Address sou
   }
   const auto bytes = pack(**message, values);
   if (!bytes) {
-    return ParseError{(*message)->name + ": " + bytes.error().message, 0};
+    return bytes.error();
   }
   return std::optional<Bytes>(*bytes);
 }

@@ -1,6 +1,6 @@
 /// The words of a message by its names: MESSAGE [FIELD=VALUE...]. Pure functions.
-#ifndef ROIO_CLI_NAMES_MESSAGE_WORDS_HPP
-#define ROIO_CLI_NAMES_MESSAGE_WORDS_HPP
+#ifndef ROIO_CLI_NAMES_NAMED_DATA_HPP
+#define ROIO_CLI_NAMES_NAMED_DATA_HPP
 
 #include <optional>
 #include <roio/robot.hpp>
@@ -16,9 +16,9 @@ namespace roio::cli {
 /// @return none: the first word names no message, and may be bytes. An error: the message is named,
 ///         and its fields are not as they should be; or the word is neither, and these are the
 ///         messages there are.
-Parsed<std::optional<Bytes>> parse_message_words(const Robot& robot, Address source,
-                                                 Address destination,
-                                                 std::span<const std::string> words);
+Parsed<std::optional<Bytes>> parse_named_data(const Robot& robot, Address source,
+                                              Address destination,
+                                              std::span<const std::string> words);
 
 }  // namespace roio::cli
 
