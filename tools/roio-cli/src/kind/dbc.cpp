@@ -18,7 +18,7 @@ constexpr std::uint32_t extended = 0x80000000;
 constexpr unsigned byte_bits = 8;
 
 /// In double quotes, which cannot stand in a DBC's text.
-std::string quoted(std::string_view text) {
+std::string dbc_string(std::string_view text) {
   std::string line = one_line(text);
   std::replace(line.begin(), line.end(), '"', '\'');
   std::replace(line.begin(), line.end(), '\\', '/');
@@ -45,10 +45,12 @@ class Writer {
     for (const Place& place : robot.places) {
       nodes_[&place] = node_names_.add(identifier(place.name), longest_name);
     }
-    head_ = fmt::format("VERSION {}\n\nNS_ :\n\nBS_:\n\nBU_:", quoted(origin("robot dbc", source)));
+    head_ =
+        fmt::format("VERSION {}\n\nNS_ :\n\nBS_:\n\nBU_:", dbc_string(origin("robot dbc", source)));
     for (const Place& place : robot.places) {
       head_ += ' ' + nodes_[&place];
-      comments_ += fmt::format("CM_ BU_ {} {};\n", nodes_[&place], quoted(description_of(place)));
+      comments_ +=
+          fmt::format("CM_ BU_ {} {};\n", nodes_[&place], dbc_string(description_of(place)));
     }
     head_ += "\n\n";
   }
@@ -95,9 +97,9 @@ class Writer {
   }
 
   [[nodiscard]] std::string general_comment() const {
-    return fmt::format(
-        "CM_ {};\n",
-        quoted(fmt::format("{}. Messages of normal priority between its places; urgent ones have "
+    return fmt::format("CM_ {};\n",
+                       dbc_string(fmt::format(
+                           "{}. Messages of normal priority between its places; urgent ones have "
                            "other identifiers, and are not in here.",
                            robot_.name)));
   }
@@ -124,7 +126,7 @@ class Writer {
     messages_ += fmt::format(" SG_ {} M : 7|8@0+ (1,0) [0|255] \"\" {}\n", name, receivers_);
     tables_ += fmt::format("VAL_ {} {}", id_, name);
     for (const MessageKind* message : told) {
-      tables_ += fmt::format(" {} {}", *message->tag, quoted(message->name));
+      tables_ += fmt::format(" {} {}", *message->tag, dbc_string(message->name));
     }
     tables_ += " ;\n";
   }
@@ -155,14 +157,14 @@ class Writer {
         fmt::format(" SG_ {} {}: {}|{}@0{} ({},0) [{}] {} {}\n", name,
                     message.tag ? fmt::format("m{} ", *message.tag) : "", start_of(field.first_bit),
                     field.width, field.form == Field::Form::signed_number ? '-' : '+', step, range,
-                    quoted(field.unit), receivers_);
+                    dbc_string(field.unit), receivers_);
     if (!field.description.empty()) {
-      comments_ += fmt::format("CM_ SG_ {} {} {};\n", id_, name, quoted(field.description));
+      comments_ += fmt::format("CM_ SG_ {} {} {};\n", id_, name, dbc_string(field.description));
     }
     if (is_choice) {
       tables_ += fmt::format("VAL_ {} {}", id_, name);
       for (const Choice& choice : field.choices) {
-        tables_ += fmt::format(" {} {}", choice.raw, quoted(choice.name));
+        tables_ += fmt::format(" {} {}", choice.raw, dbc_string(choice.name));
       }
       tables_ += " ;\n";
     }
@@ -185,7 +187,7 @@ class Writer {
       notes_.push_back(fmt::format("{} to {}: {}", way.source->name,
                                    robot_.name_of(way.header().destination), why));
     }
-    comments_ += fmt::format("CM_ BO_ {} {};\n", id_, quoted(text));
+    comments_ += fmt::format("CM_ BO_ {} {};\n", id_, dbc_string(text));
   }
 
   const Robot& robot_;
