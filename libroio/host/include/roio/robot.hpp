@@ -64,7 +64,7 @@ class ROIO_EXPORT Robot {
  public:
   std::string name;
   std::string description;
-  std::string version;        ///< These three as the file says; empty: it does not.
+  std::string version;  ///< These three as the file says; empty: it does not.
   std::string serial_number;
   std::string maker;
   std::string bus;                       ///< As open() takes it; empty: not named.
@@ -88,7 +88,7 @@ class ROIO_EXPORT Robot {
   /// the name agree on the bytes.
   /// @return an error says which messages there are.
   [[nodiscard]] Parsed<const MessageKind*> message(Address source, Address destination,
-                                                   std::string_view name) const;
+                                                   std::string_view message_name) const;
 
   /// A message to a place, from none: Node::send() puts its own address in. Normal priority.
   /// @return an error as of message(), pack() and address_of().
