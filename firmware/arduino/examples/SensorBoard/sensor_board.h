@@ -1,6 +1,6 @@
 // Made by `roio-cli kind header` from sensor-board.kind.json: change that, and make this again.
 //
-// sensor-board: A light sensor, two buttons and three potentiometers
+// sensor-board: A light sensor, two buttons, three potentiometers: the Arduino example SensorBoard
 //
 // A message is a struct of what is on the wire, and there are, for each:
 //
@@ -27,10 +27,11 @@ namespace said {
 
 // --- values: 6 bytes
 
+/// Told at the start, and when one has changed
 struct Values {
   uint8_t light;    ///< 0 to 255
-  uint8_t button1;  ///< 0 to 255
-  uint8_t button2;  ///< 0 to 255
+  uint8_t button1;  ///< 0 to 255: Clicks; 0 follows 255
+  uint8_t button2;  ///< 0 to 255: Clicks; 0 follows 255
   uint8_t pot1;     ///< 0 to 255
   uint8_t pot2;     ///< 0 to 255
   uint8_t pot3;     ///< 0 to 255

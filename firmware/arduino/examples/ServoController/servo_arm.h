@@ -1,6 +1,6 @@
 // Made by `roio-cli kind header` from servo-arm.kind.json: change that, and make this again.
 //
-// servo-arm: Three servos, moved by messages
+// servo-arm: Three servos, moved by messages: the Arduino example ServoController
 //
 // A message is a struct of what is on the wire, and there are, for each:
 //
@@ -111,7 +111,7 @@ namespace said {
 
 // --- refusals: 2 bytes
 
-/// The answer
+/// How many messages were refused; 0 follows 65535
 struct Refusals {
   uint16_t count;  ///< 0 to 65535
 };

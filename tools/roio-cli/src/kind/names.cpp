@@ -202,7 +202,7 @@ bool is_taken(std::string_view text) {
 
 std::string finish(std::string text) {
   if (!text.empty() && std::isdigit(static_cast<unsigned char>(text.front())) != 0) {
-    text.insert(0, "n");
+    text = 'n' + text;
   }
   return is_taken(text) ? text + '_' : text;
 }

@@ -34,15 +34,19 @@ void add_occurring(const Robot& robot, const std::vector<MessageKind>& messages,
   }
 }
 
+bool hears(const Place& place, const Way& way) {
+  return way.destination == nullptr ? place.address.subnet == way.subnet
+                                    : &place == way.destination;
+}
+
 void add_way(const Robot& robot, Way way, std::vector<Way>& ways) {
   if (way.source->kind) {
     add_occurring(robot, way.source->kind->said, way);
-  }
-  for (const Place& place : robot.places) {
-    const bool hears =
-        way.destination == nullptr ? place.address.subnet == way.subnet : &place == way.destination;
-    if (hears && place.kind) {
-      add_occurring(robot, place.kind->heard, way);
+  } else {
+    for (const Place& place : robot.places) {
+      if (place.kind && hears(place, way)) {
+        add_occurring(robot, place.kind->heard, way);
+      }
     }
   }
   if (!way.messages.empty()) {

@@ -18,14 +18,15 @@ struct Way {
   [[nodiscard]] Header header() const;
 };
 
-/// All on which a message has a name, as Robot::meaning() has it: by source, then destination, in
-/// the order of the file, each source's broadcasts behind.
+/// All on which a message has a name, as Robot::meaning() has it. A place with a kind sends what
+/// that says; one without, what its receiver hears. By source, then destination, in the order of
+/// the file, each source's broadcasts behind.
 std::vector<Way> ways_of(const Robot& robot);
 
 /// On one identifier a DBC tells messages apart by a number in a fixed place, and by nothing else.
 struct Distinction {
   std::vector<const MessageKind*> told;    ///< Have signals; with more than one, all have tags.
-  std::vector<const MessageKind*> untold;  ///< Told apart by length alone, or by length and tag.
+  std::vector<const MessageKind*> untold;  ///< It takes their length to know them.
   std::vector<const MessageKind*> empty;   ///< Of 0 bytes: no signal can be misread in them.
 };
 Distinction distinguish(const std::vector<const MessageKind*>& messages);
