@@ -1,4 +1,5 @@
-// The example SensorBoard with its bytes read and written by hand: what its generated header must not be larger than.
+// The example SensorBoard with its bytes written by hand: what the one with a generated header must not
+// be larger than.
 #include <Roio.h>
 
 // As printed on the module's crystal: 8.000, on the usual blue module, is 8000000. With the wrong

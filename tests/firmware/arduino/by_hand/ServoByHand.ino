@@ -1,4 +1,5 @@
-// The example ServoController with its bytes read and written by hand: what its generated header must not be larger than.
+// The example ServoController with its bytes read and written by hand: what the one with a generated
+// header must not be larger than.
 #include <Roio.h>
 
 #include "TimerServo.h"  // without an AVR: #include <Servo.h>, and Servo in place of TimerServo
