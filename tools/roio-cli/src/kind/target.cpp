@@ -2,7 +2,7 @@
 
 #include <cerrno>
 #include <fstream>
-#include <iterator>
+#include <sstream>
 #include <string_view>
 #include <system_error>
 
@@ -17,13 +17,17 @@ namespace {
 }
 
 std::string read_all(const std::filesystem::path& file) {
+  if (std::filesystem::is_directory(file)) {
+    fail(file, EISDIR);
+  }
   errno = 0;
   std::ifstream in(file, std::ios::binary);
-  std::string text(std::istreambuf_iterator<char>(in), {});
-  if (!in.is_open() || in.bad() || std::filesystem::is_directory(file)) {
-    fail(file, errno == 0 ? EISDIR : errno);
+  std::ostringstream text;
+  text << in.rdbuf();
+  if (!in.is_open() || in.bad()) {
+    fail(file, errno == 0 ? EIO : errno);
   }
-  return text;
+  return text.str();
 }
 
 void write_all(const std::filesystem::path& file, const std::string& text) {
