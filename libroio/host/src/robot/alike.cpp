@@ -45,6 +45,11 @@ std::size_t distance(std::string_view a, std::string_view b) {
   return last[b.size()];
 }
 
+bool is_short_for(std::string_view word, std::string_view name) {
+  constexpr std::size_t least = 3;
+  return word.size() >= least && name.starts_with(word);
+}
+
 }  // namespace
 
 std::optional<std::string> nearest(std::string_view word, const std::vector<std::string>& names) {
@@ -54,7 +59,7 @@ std::optional<std::string> nearest(std::string_view word, const std::vector<std:
     if (word.empty() || word.size() > longest || name.size() > longest) {
       continue;
     }
-    const std::size_t steps = distance(word, name);
+    const std::size_t steps = is_short_for(word, name) ? 1 : distance(word, name);
     const std::size_t most = std::max<std::size_t>(1, std::min(word.size(), name.size()) / 3);
     if (steps <= most && steps < name.size() && (!found || steps < least)) {
       found = name;

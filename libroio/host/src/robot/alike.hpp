@@ -8,8 +8,9 @@
 
 namespace roio::robot_file {
 
-/// The name that may have been meant: a slip of the pen away (a letter more, less, another, two
-/// swapped, upper for lower case), in a third of its letters at most. Of several the nearest.
+/// The name that may have been meant: begun and not ended ("max"), or a slip of the pen away (a
+/// letter more, less, another, two swapped, upper for lower case), in a third of its letters at
+/// most. Of several the nearest.
 std::optional<std::string> nearest(std::string_view word, const std::vector<std::string>& names);
 
 /// "a, b, c", of many the first ten and how many more.

@@ -23,6 +23,12 @@ const Value* find_child(const Value& object, std::string_view name) {
   return nullptr;
 }
 
+void check_version(const At& at) {
+  if (!at.is(Value::Type::number) || at.value().text != std::to_string(format_version)) {
+    at.refuse(std::to_string(format_version) + ", the version of the format that is read here");
+  }
+}
+
 std::optional<std::uint64_t> read_whole(std::string_view text) {
   std::uint64_t value = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
@@ -58,8 +64,9 @@ const std::string& At::identifier() const {
 }
 
 const std::string& At::line(std::size_t min, std::size_t max) const {
-  const std::string expected = "a text of " + std::to_string(min) + " to " + std::to_string(max) +
-                               " characters, on one line";
+  const std::string expected = "a text of " +
+                               (min == 0 ? "at most " : std::to_string(min) + " to ") +
+                               std::to_string(max) + " characters, on one line";
   if (!is_line(text(expected), min, max)) {
     refuse(expected);
   }
@@ -67,9 +74,7 @@ const std::string& At::line(std::size_t min, std::size_t max) const {
 }
 
 std::uint64_t At::whole(std::uint64_t min, std::uint64_t max) const {
-  const std::string expected =
-      min == max ? std::to_string(min)
-                 : "a whole number " + std::to_string(min) + ".." + std::to_string(max);
+  const std::string expected = "a whole number " + std::to_string(min) + ".." + std::to_string(max);
   const auto number = is(Value::Type::number) ? read_whole(value_->text) : std::nullopt;
   if (!number || *number < min || *number > max) {
     const bool is_plain = value_->text.find_first_of(".eE") == std::string::npos;
@@ -146,7 +151,7 @@ Object file_object(const Source& source, const Value& document, const Object::Na
   }
   // Another version may have other fields: which one it is comes first.
   if (const Value* version = find_child(document, "roio")) {
-    static_cast<void>(At(source, *version, "roio").whole(format_version, format_version));
+    check_version(At(source, *version, "roio"));
   }
   Object object(at, known);
   static_cast<void>(object.need("roio", "1, the version of the format"));

@@ -60,12 +60,12 @@ class Builder final : public nlohmann::json_sax<nlohmann::json> {
                    const nlohmann::json::exception& error) override {
     constexpr int number_overflow = 406;
     if (error.id == number_overflow) {
-      source_.refuse(taken_, place(), quote(last_token) + " is too large a number");
+      source_.refuse(taken_, next_place(), quote(last_token) + " is too large a number");
     }
     const std::size_t fault = position > 0 ? position - 1 : 0;  // position counts the character
     const SyntaxState state{open_.empty() ? std::nullopt : std::optional(open_.back()->type),
                             has_key_, is_begun_ && open_.empty()};
-    refuse_syntax(source_, fault, place(), state);
+    refuse_syntax(source_, fault, next_place(), state);
   }
 
  private:
@@ -95,7 +95,7 @@ class Builder final : public nlohmann::json_sax<nlohmann::json> {
 
   bool open(Value::Type type) {
     if (open_.size() == max_depth) {
-      source_.refuse(taken_ - 1, place(),
+      source_.refuse(taken_ - 1, next_place(),
                      "too deep; expected at most " + std::to_string(max_depth) +
                          " objects and arrays in each other");
     }
@@ -147,6 +147,14 @@ class Builder final : public nlohmann::json_sax<nlohmann::json> {
                 : out + '[' + std::to_string(open_[i - 1]->children.size() - 1) + ']';
     }
     return out;
+  }
+
+  /// Of the value that comes.
+  [[nodiscard]] std::string next_place() const {
+    if (!open_.empty() && open_.back()->type == Value::Type::array) {
+      return place() + '[' + std::to_string(open_.back()->children.size()) + ']';
+    }
+    return has_key_ ? place_in(place(), key_) : place();
   }
 
   const Source& source_;

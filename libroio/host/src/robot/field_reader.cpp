@@ -36,23 +36,17 @@ constexpr std::array<TypeRule, 11> type_rules{{{"u8", Field::Form::number, 8},
                                                {"enum", Field::Form::choice, 8, true},
                                                {"bytes", Field::Form::bytes, 0}}};
 
-Names type_names() {
-  Names names;
-  for (const TypeRule& rule : type_rules) {
-    names.emplace_back(rule.name);
-  }
-  return names;
-}
+constexpr const char* expected_type =
+    "one of u8, u16, u24, u32, i8, i16, i24, i32, bits, enum, bytes";
 
 const TypeRule& read_type(const At& at) {
-  const std::string expected = "one of u8, u16, u24, u32, i8, i16, i24, i32, bits, enum, bytes";
-  const std::string& name = at.text(expected);
+  const std::string& name = at.text(expected_type);
   for (const TypeRule& rule : type_rules) {
     if (name == rule.name) {
       return rule;
     }
   }
-  at.refuse(expected);
+  at.refuse(expected_type);
 }
 
 /// What a field of each type may have, "type" and "name" apart.
@@ -133,6 +127,11 @@ std::string shown_range(Range range, Fraction scale) {
   return step_text(range.minimum, scale) + ".." + step_text(range.maximum, scale);
 }
 
+std::string shown_scale(Fraction scale) {
+  return std::to_string(scale.numerator) +
+         (scale.denominator == 1 ? "" : '/' + std::to_string(scale.denominator));
+}
+
 /// A limit in the unit, which must be a step. @param type what the type holds.
 std::int64_t read_limit(const At& at, const Field& field, Range type) {
   const auto number =
@@ -145,8 +144,7 @@ std::int64_t read_limit(const At& at, const Field& field, Range type) {
     at.refuse("a number " + shown_range(type, field.scale) + ", which the type holds");
   }
   if (!steps.is_exact()) {
-    at.refuse("a multiple of the scale, " + std::to_string(field.scale.numerator) + '/' +
-              std::to_string(field.scale.denominator));
+    at.refuse("a multiple of the scale, " + shown_scale(field.scale));
   }
   return steps.lower;
 }
@@ -163,8 +161,8 @@ void read_number(const Object& object, Field& field) {
   field.maximum = maximum ? read_limit(*maximum, field, type) : type.maximum;
   if (field.minimum > field.maximum) {
     (minimum ? *minimum : *maximum)
-        .wrong("no value is from " + step_text(field.minimum, field.scale) + " to " +
-               step_text(field.maximum, field.scale));
+        .wrong("the minimum, " + step_text(field.minimum, field.scale) +
+               ", is above the maximum, " + step_text(field.maximum, field.scale));
   }
 }
 
@@ -178,7 +176,7 @@ void read_choices(const Object& object, Field& field) {
   }
   for (const At& value : values.children()) {
     if (!is_name(value.name(), FirstCharacter::letter_or_digit)) {
-      value.wrong(std::string("no name; expected ") + choice_rule);
+      value.wrong(std::string("not a name; expected ") + choice_rule);
     }
     const auto raw =
         static_cast<std::uint8_t>(value.whole(0, static_cast<std::uint64_t>(type.maximum)));
@@ -240,7 +238,7 @@ void refuse_twin(const Object& object, const std::vector<Field>& fields, const s
 }
 
 const TypeRule& type_of(const Object& object) {
-  return read_type(object.need("type", "one of " + listed(type_names())));
+  return read_type(object.need("type", expected_type));
 }
 
 std::vector<At> fields_of(const At& array) {
@@ -294,6 +292,10 @@ std::vector<Field> read_message_fields(const At& array, Layout& layout) {
 
 std::vector<Field> read_settings(const At& array) {
   std::vector<Field> fields;
+  if (array.value().children.size() > max_settings) {
+    array.wrong(std::to_string(array.value().children.size()) + " settings; expected at most " +
+                std::to_string(max_settings));
+  }
   for (const At& at : fields_of(array)) {
     const Object any(at, all_names());
     const TypeRule& rule = type_of(any);

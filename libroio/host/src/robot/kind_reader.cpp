@@ -40,7 +40,7 @@ void check_length(const At& at, const MessageKind& message) {
 
 MessageKind read_message(const At& at) {
   if (!is_name(at.name())) {
-    at.wrong(std::string("no name; expected ") + name_rule);
+    at.wrong(std::string("not a name; expected ") + name_rule);
   }
   const Object object(at, {"description", "fields", "tag", "length"});
   MessageKind message;
@@ -65,13 +65,19 @@ bool are_alike(const MessageKind& a, const MessageKind& b) {
   return share_a_length && (!a.tag || !b.tag || a.tag == b.tag);
 }
 
+std::string shown_tags(const MessageKind& a, const MessageKind& b) {
+  if (a.tag && b.tag) {
+    return "tag " + std::to_string(*a.tag);
+  }
+  return a.tag || b.tag ? "one of them has no tag" : "neither has a tag";
+}
+
 void refuse_alike(const At& at, const MessageKind& message, const MessageKind& other) {
-  const std::string tags = message.tag && other.tag ? "have tag " + std::to_string(*message.tag)
-                                                    : "one of them has no tag";
-  at.wrong("cannot be told from " + quote(other.name) + ": both have length " +
-           shown_length(message) +
-           (shown_length(other) == shown_length(message) ? "" : " and " + shown_length(other)) +
-           ", and " + tags + "; expected another length, or tags that differ");
+  const std::string own = shown_length(message);
+  const std::string others = shown_length(other);
+  at.wrong("cannot be told from " + quote(other.name) + ": both have length " + own +
+           (others == own ? "" : " and " + others) + ", and " + shown_tags(message, other) +
+           "; expected another length, or tags that differ");
 }
 
 std::vector<MessageKind> read_messages(const Object& kind, std::string_view direction) {
@@ -139,7 +145,7 @@ Parsed<Kind> load_kind(const std::filesystem::path& file) {
   const std::string suffix = robot_file::kind_suffix;
   if (!name.ends_with(suffix) || name.size() == suffix.size()) {
     return ParseError{robot_file::shown_name(origin) +
-                          ": a kind's file is called by the kind's name and " + suffix,
+                          ": not called as a kind's file is; expected NAME" + suffix,
                       0};
   }
   const Parsed<std::string> text = robot_file::read_file(file);

@@ -20,6 +20,9 @@ inline constexpr std::size_t max_unit = 16;
 inline constexpr std::size_t max_title = 100;
 inline constexpr std::size_t max_description = 1000;
 
+/// Fields of a kind that a robot sets.
+inline constexpr std::size_t max_settings = 100;
+
 /// Of a fraction's two parts.
 inline constexpr std::uint64_t max_part = 1000000;
 

@@ -134,7 +134,7 @@ class RobotReader {
 
   Place read_place(const At& at, const Robot& robot) {
     if (!is_name(at.name())) {
-      at.wrong(std::string("no name; expected ") + name_rule);
+      at.wrong(std::string("not a name; expected ") + name_rule);
     }
     const Object object(at, {"address", "kind", "settings", "description", "simulation"});
     Place place;

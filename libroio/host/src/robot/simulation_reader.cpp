@@ -71,7 +71,7 @@ std::optional<std::string> read_pin(const Object& simulation, std::string_view n
 
 void refuse_taken(const At& at, const SimulatedBoard& board, const PinPart& part) {
   if (part.pin == board.cs_pin.value_or("10") || part.pin == board.int_pin.value_or("2")) {
-    at.wrong("the pin is that of the MCP2515's CS or INT");
+    at.wrong("the pin is that of the MCP2515's CS or INT; expected another");
   }
   for (const PinPart& other : board.pins) {
     if (other.name == part.name) {
@@ -82,7 +82,7 @@ void refuse_taken(const At& at, const SimulatedBoard& board, const PinPart& part
 
 PinPart read_part(const At& at) {
   if (!is_pin(at.name())) {
-    at.wrong(std::string("no pin; expected ") + pin_rule);
+    at.wrong(std::string("not a pin; expected ") + pin_rule);
   }
   const Object object(at, {"type", "name"});
   PinPart part;

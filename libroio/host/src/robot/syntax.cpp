@@ -24,6 +24,10 @@ bool is_escaped(std::string_view text, std::size_t at) {
   return backslashes % 2 == 1;
 }
 
+bool is_control(char character) {
+  return character >= '\0' && character < ' ';
+}
+
 /// The parser stops behind a text that does not belong where it is, at its last quote.
 std::size_t start_of_text(std::string_view text, std::size_t fault) {
   std::size_t at = fault;
@@ -42,6 +46,17 @@ std::size_t start_of_word(std::string_view text, std::size_t fault) {
     --fault;
   }
   return fault;
+}
+
+std::size_t start_of_fault(std::string_view text, std::size_t fault) {
+  if (text[fault] == '"') {
+    return start_of_text(text, fault);
+  }
+  if (is_control(text[fault])) {
+    return fault;
+  }
+  const bool is_escape = fault > 0 && text[fault - 1] == '\\';
+  return is_escape ? fault - 1 : start_of_word(text, fault);
 }
 
 /// The end of the document that is whole; the parser reads on behind it to the next fault.
@@ -88,11 +103,11 @@ std::string expected_at(std::string_view text, std::size_t fault, const SyntaxSt
   if (text[fault] == '/') {
     return "no comment: JSON has none";
   }
-  if (text[fault] < ' ') {
-    return "the end of the text on its line";
+  if (is_control(text[fault])) {
+    return "the end of the text, which is on one line";
   }
   const std::size_t before = text.substr(0, fault).find_last_not_of(blanks);
-  if (before != std::string_view::npos && text[before] == '\\') {
+  if (text[fault] == '\\') {
     return "an escape of JSON, such as \\n or \\\\";
   }
   if (!state.open || before == std::string_view::npos) {
@@ -121,7 +136,7 @@ void refuse_syntax(const Source& source, std::size_t fault, std::string_view pla
     source.refuse(text.size(), place,
                   "the text ends here; expected " + std::string(state.open ? "more" : "an object"));
   }
-  fault = text[fault] == '"' ? start_of_text(text, fault) : start_of_word(text, fault);
+  fault = start_of_fault(text, fault);
   source.refuse(fault, place, shown(text, fault) + "; expected " + expected_at(text, fault, state));
 }
 
