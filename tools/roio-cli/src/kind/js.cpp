@@ -23,35 +23,53 @@ constexpr const char* manual = R"(//
 
 )";
 
-// The part that all kinds have alike. Fields: name, form, first bit, width, smallest and largest
-// number on the wire; then of numbers the unit and the scale, of choices name by number.
-constexpr const char* runtime = R"(function expected(field) {
-  if (field.form === "choice") {
-    return `one of ${Object.keys(field.choices).join(", ")}`;
-  }
-  if (field.form === "bytes") {
-    return `${field.minimum} to ${field.maximum} bytes`;
-  }
-  const [numerator, denominator] = field.scale;
-  const unit = field.unit ? ` ${field.unit}` : "";
-  return `a number ${(field.minimum * numerator) / denominator}..${(field.maximum * numerator) / denominator}${unit}`;
+// The part that all kinds have alike. It is checked by TypeScript, too: `tsc --checkJs --strict`.
+constexpr const char* runtime = R"(/**
+ * A field: minimum and maximum are on the wire, of bytes their number.
+ * @typedef {{
+ *   name: string, form: "number" | "signed" | "choice" | "bytes", bit: number, width: number,
+ *   minimum: number, maximum: number, unit?: string, scale?: number[], choices?: Record<string, number>
+ * }} Field
+ */
+
+/** @param {Field} field  @param {number} raw */
+function inUnit(field, raw) {
+  const [numerator, denominator] = field.scale ?? [1, 1];
+  return (raw * numerator) / denominator;
 }
 
-/** What goes on the wire; undefined: the value is none of the field's. */
-function rawOf(field, value) {
+/** @param {Field} field */
+function expected(field) {
   if (field.form === "choice") {
-    return typeof value === "string" && Object.hasOwn(field.choices, value) ? field.choices[value] : undefined;
+    return `one of ${Object.keys(field.choices ?? {}).join(", ")}`;
   }
-  let raw;
+  if (field.form === "bytes") {
+    return `a Uint8Array of ${field.minimum} to ${field.maximum}`;
+  }
+  const unit = field.unit ? ` ${field.unit}` : "";
+  return `a number ${inUnit(field, field.minimum)}..${inUnit(field, field.maximum)}${unit}`;
+}
+
+/**
+ * What goes on the wire, of bytes their number; not a number: the value is none of the field's.
+ * @param {Field} field  @param {unknown} value
+ */
+function rawOf(field, value) {
+  let raw = NaN;
+  if (field.form === "choice") {
+    return typeof value === "string" && Object.hasOwn(field.choices ?? {}, value) ? field.choices?.[value] ?? NaN : NaN;
+  }
   if (field.form === "bytes") {
     raw = value instanceof Uint8Array ? value.length : NaN;
   } else if (typeof value === "number") {
-    const steps = (value * field.scale[1]) / field.scale[0];
+    const [numerator, denominator] = field.scale ?? [1, 1];
+    const steps = (value * denominator) / numerator;
     raw = Math.sign(steps) * Math.round(Math.abs(steps));
   }
-  return raw >= field.minimum && raw <= field.maximum ? raw : undefined;
+  return raw >= field.minimum && raw <= field.maximum ? raw : NaN;
 }
 
+/** @param {Uint8Array} bytes  @param {Field} field  @param {number} raw */
 function put(bytes, field, raw) {
   for (let i = 0; i < field.width; ++i) {
     const bit = field.bit + field.width - 1 - i;
@@ -59,6 +77,7 @@ function put(bytes, field, raw) {
   }
 }
 
+/** @param {Uint8Array} bytes  @param {Field} field */
 function get(bytes, field) {
   let raw = 0;
   for (let bit = field.bit; bit < field.bit + field.width; ++bit) {
@@ -67,37 +86,47 @@ function get(bytes, field) {
   return field.form === "signed" && raw >= 2 ** (field.width - 1) ? raw - 2 ** field.width : raw;
 }
 
-function valueOf(field, bytes) {
+/** @param {Uint8Array} bytes  @param {Field} field */
+function valueOf(bytes, field) {
   if (field.form === "bytes") {
     return bytes.slice(field.bit >> 3);
   }
   const raw = get(bytes, field);
   if (field.form === "choice") {
-    return Object.keys(field.choices).find((name) => field.choices[name] === raw) ?? raw;
+    return Object.entries(field.choices ?? {}).find(([, number]) => number === raw)?.[0] ?? raw;
   }
-  return (raw * field.scale[0]) / field.scale[1];
+  return inUnit(field, raw);
 }
 
-/** @template Values */
+/** @template {object} Values */
 class Message {
+  /**
+   * @param {string} name  @param {number | null} tag  @param {number} minimumLength
+   * @param {number} length  @param {Field[]} fields
+   */
   constructor(name, tag, minimumLength, length, fields) {
-    Object.assign(this, {name, tag, minimumLength, length, fields});
+    this.name = name;
+    this.tag = tag;
+    this.minimumLength = minimumLength;
+    this.length = length;
+    this.fields = fields;
   }
 
   /** @param {Values} values  @returns {string | null} */
   problem(values) {
-    const unknown = Object.keys(values).find((name) => !this.fields.some((field) => field.name === name));
+    const given = new Map(Object.entries(values));
+    const unknown = [...given.keys()].find((name) => !this.fields.some((field) => field.name === name));
     if (unknown !== undefined) {
       const names = this.fields.map((field) => field.name).join(", ") || "none";
       return `${this.name}: no field ${JSON.stringify(unknown)}; expected ${names}`;
     }
     for (const field of this.fields) {
-      if (!Object.hasOwn(values, field.name)) {
+      const value = given.get(field.name);
+      if (value === undefined) {
         if (field.form !== "bytes" || field.minimum > 0) {
           return `${this.name}.${field.name}: missing; expected ${expected(field)}`;
         }
-      } else if (rawOf(field, values[field.name]) === undefined) {
-        const value = values[field.name];
+      } else if (Number.isNaN(rawOf(field, value))) {
         const shown = typeof value === "string" ? JSON.stringify(value) : String(value);
         return `${this.name}.${field.name}: ${shown}; expected ${expected(field)}`;
       }
@@ -111,6 +140,7 @@ class Message {
     if (problem !== null) {
       throw new RangeError(problem);
     }
+    const given = new Map(Object.entries(values));
     const bytes = new Uint8Array(this.length);
     let length = this.length;
     if (this.tag !== null) {
@@ -118,11 +148,11 @@ class Message {
     }
     for (const field of this.fields) {
       if (field.form === "bytes") {
-        const rest = Object.hasOwn(values, field.name) ? values[field.name] : new Uint8Array(0);
+        const rest = given.get(field.name) ?? new Uint8Array(0);
         bytes.set(rest, field.bit >> 3);
         length = (field.bit >> 3) + rest.length;
       } else {
-        put(bytes, field, rawOf(field, values[field.name]));
+        put(bytes, field, rawOf(field, given.get(field.name)));
       }
     }
     return bytes.slice(0, length);
@@ -134,7 +164,8 @@ class Message {
         (this.tag !== null && bytes[0] !== this.tag)) {
       return null;
     }
-    return Object.fromEntries(this.fields.map((field) => [field.name, valueOf(field, bytes)]));
+    return /** @type {Values} */ (
+      Object.fromEntries(this.fields.map((field) => [field.name, valueOf(bytes, field)])));
   }
 }
 
@@ -145,10 +176,10 @@ class Message {
  * @returns {{name: string, values: object} | null}
  */
 export function unpack(direction, bytes) {
-  for (const [name, message] of Object.entries(direction)) {
+  for (const message of Object.values(direction)) {
     const values = message.unpack(bytes);
     if (values !== null) {
-      return {name, values};
+      return {name: message.name, values};
     }
   }
   return null;
