@@ -2,6 +2,7 @@
 
 ROIO_CLI names the program, ROIO_SOURCES the tree.
 """
+import json
 import os
 import pathlib
 import shutil
@@ -185,6 +186,16 @@ class Wrong(CommandTest):
             status, made, errors = run("robot", command, robot)
             self.assertEqual((status, made, errors.count("\n")), (1, "", 1))
             self.assertIn("sensor-board", errors)
+
+
+    def test_a_robot_of_too_many_places_for_a_dbc(self):
+        def robot(count):
+            places = {f"p{i}": {"address": f"{i // 100}.{i % 100}"} for i in range(count)}
+            return self.write("robot.json", json.dumps({"roio": 1, "name": "crowd", "places": places}))
+        self.assertEqual(run("robot", "dbc", robot(201)),
+                         (1, "", f"roio-cli: {self.folder / 'robot.json'}: 201 places; expected at most 200, as a DBC has "
+                                 "a message for each two of them\n"))
+        self.assertEqual(run("robot", "dbc", "-o", self.folder / "out", robot(200)), (0, "", ""))
 
 
 class Checked(CommandTest):

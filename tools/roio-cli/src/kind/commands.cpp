@@ -58,6 +58,11 @@ int make_from_kind(const KindOptions& options) {
 
 int make_dbc(const RobotDbcOptions& options) {
   const Robot robot = value_or_fail(load_robot(options.file));
+  if (robot.places.size() > most_dbc_places) {
+    throw Failure(options.file.string() + ": " + std::to_string(robot.places.size()) +
+                  " places; expected at most " + std::to_string(most_dbc_places) +
+                  ", as a DBC has a message for each two of them");
+  }
   const Dbc dbc = robot_dbc(robot, options.file.string());
   for (const std::string& text : dbc.notes) {
     note(options.file.string() + ": " + text);

@@ -2,6 +2,7 @@
 #ifndef ROIO_CLI_KIND_COMMANDS_HPP
 #define ROIO_CLI_KIND_COMMANDS_HPP
 
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
 
@@ -24,6 +25,9 @@ struct RobotDbcOptions {
 struct RobotCheckOptions {
   std::filesystem::path file;
 };
+
+/// A robot of more has no DBC: its messages grow with the square of that.
+inline constexpr std::size_t most_dbc_places = 200;
 
 /// @return the exit status. @throws Failure: what is wrong with the file, in one line.
 int make_from_kind(const KindOptions& options);
