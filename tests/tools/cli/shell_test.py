@@ -16,7 +16,8 @@ def read(*path):
         return file.read()
 
 
-COMMANDS = ["send", "dump", "buses", "hub", "bridge show", "bridge set", "bridge identify", "bridge attach"]
+COMMANDS = ["send", "dump", "buses", "hub", "bridge show", "bridge set", "bridge identify", "bridge attach",
+            "kind header", "kind js", "kind md", "robot dbc", "robot check"]
 
 
 class SyncTest(CliTest):
@@ -40,7 +41,7 @@ class SyncTest(CliTest):
                 for part in flag.split(" , "):
                     words = part.replace("Fl Fl ", "--").replace("Fl ", "-").split()
                     described.add(words[0])
-            self.assertEqual(described - {"-v"}, self.options(command), command)
+            self.assertEqual(described - {"-v", "-o"}, self.options(command), command)
 
     def test_bash_offers_every_option(self):
         text = read("completions", "roio-cli.bash")
@@ -61,8 +62,7 @@ class SyncTest(CliTest):
     def test_fish_offers_every_option(self):
         text = read("completions", "roio-cli.fish")
         for command in COMMANDS:
-            of = (command.replace("bridge", "__roio_cli_bridge") if " " in command else
-                  "__fish_seen_subcommand_from " + command)
+            of = ("__roio_cli_" if " " in command else "__fish_seen_subcommand_from ") + command
             found = re.findall(rf"-n '{of}' (?:-s (\w) )?(?:-l ([\w-]+))?", text)
             offered = {"--" + long if long else "-" + short for short, long in found if short or long}
             self.assertEqual(offered, self.options(command), command)
@@ -71,7 +71,7 @@ class SyncTest(CliTest):
 class ManualTest(CliTest):
     def test_pages_are_clean(self):
         pages = sorted(glob.glob(os.path.join(TOOL, "man", "*.1")))
-        self.assertEqual(len(pages), 6)
+        self.assertEqual(len(pages), 8)
         done = subprocess.run(
             ["mandoc", "-Tlint", "-Wwarning", *pages], capture_output=True, text=True, timeout=GUARD
         )
@@ -90,7 +90,8 @@ class CompletionTest(CliTest):
 
     # command line, what is offered: bash replaces what follows the last ':' or '='
     LINES = [
-        ("roio-cli ", ["--help", "--version", "bridge", "buses", "dump", "help", "hub", "send"]),
+        ("roio-cli ", ["--help", "--version", "bridge", "buses", "dump", "help", "hub", "kind",
+                       "robot", "send"]),
         ("roio-cli d", ["dump"]),
         ("roio-cli send --cl", ["--class"]),
         ("roio-cli send --wait lo", ["local:robot"]),
@@ -107,6 +108,10 @@ class CompletionTest(CliTest):
         ("roio-cli dump serial:a", ["serial:auto"]),
         ("roio-cli buses --j", ["--json"]),
         ("roio-cli bridge s", ["set", "show"]),
+        ("roio-cli kind ", ["--help", "header", "js", "md"]),
+        ("roio-cli kind js --ch", ["--check"]),
+        ("roio-cli robot d", ["dbc"]),
+        ("roio-cli robot dbc --o", ["--output"]),
         ("roio-cli bridge show a", ["auto"]),
         ("roio-cli bridge set --mode ", ["listen", "loopback", "normal"]),
         ("roio-cli bridge set --mode listen a", ["auto"]),

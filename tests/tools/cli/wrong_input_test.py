@@ -16,9 +16,9 @@ WORDS = ("expected to=SUBNET.NODE, from=SUBNET.NODE, urgent, normal, class=messa
 
 # command line, the line on standard error
 WRONG = [
-    ("", "expected a command: send, dump, buses, hub, bridge or help; `roio-cli --help` shows how"),
+    ("", "expected a command: send, dump, buses, hub, bridge, kind, robot or help; `roio-cli --help` shows how"),
     ("snd local:x",
-     'unknown command "snd": expected send, dump, buses, hub, bridge or help; `roio-cli --help` shows how'),
+     'unknown command "snd": expected send, dump, buses, hub, bridge, kind, robot or help; `roio-cli --help` shows how'),
     ("--foo", 'unknown option "--foo"; `roio-cli --help` shows how'),
     # send: what is missing
     ("send", "expected BUS, DEST and DATA" + SEND_HELP),
@@ -157,10 +157,33 @@ WRONG = [
      'no frame can satisfy these filters together; put "or" between choices'),
     # help
     ("help snd",
-     'unknown command "snd": expected send, dump, buses, hub, bridge or help; `roio-cli --help` shows how'),
+     'unknown command "snd": expected send, dump, buses, hub, bridge, kind, robot or help; `roio-cli --help` shows how'),
     ("help bridge shw",
      'unknown command "shw": expected show, set, identify or attach; `roio-cli bridge --help` shows '
      "how"),
+    # kind
+    ("kind", "expected a command: header, js or md; `roio-cli kind --help` shows how"),
+    ("kind hdr x.kind.json",
+     'unknown command "hdr": expected header, js or md; `roio-cli kind --help` shows how'),
+    ("help kind hdr",
+     'unknown command "hdr": expected header, js or md; `roio-cli kind --help` shows how'),
+    ("kind header",
+     "expected FILE, such as servo-arm.kind.json; `roio-cli kind header --help` shows how"),
+    ("kind js a.kind.json b.kind.json",
+     'expected no more words, found "b.kind.json"; `roio-cli kind js --help` shows how'),
+    ("kind md --types a.kind.json", 'unknown option "--types"; `roio-cli kind md --help` shows how'),
+    ("kind md --check a.kind.json", "--check: expected with -o OUT, the file to look at"),
+    ("kind md -o", "--output: expected a value after it"),
+    ("kind md -o '' a.kind.json", '-o: expected the name of a file, found ""'),
+    ("kind md -o a -o b a.kind.json", "--output: given twice; expected once"),
+    # robot
+    ("robot", "expected a command: dbc or check; `roio-cli robot --help` shows how"),
+    ("robot chk robot.json",
+     'unknown command "chk": expected dbc or check; `roio-cli robot --help` shows how'),
+    ("robot check", "expected FILE, such as robot.json; `roio-cli robot check --help` shows how"),
+    ("robot check -o out robot.json",
+     'unknown option "-o"; `roio-cli robot check --help` shows how'),
+    ("robot dbc --check robot.json", "--check: expected with -o OUT, the file to look at"),
     # buses
     ("buses -- can0", 'expected no more words, found "can0"; `roio-cli buses --help` shows how'),
     ("buses can0", 'expected no more words, found "can0"; `roio-cli buses --help` shows how'),
@@ -290,7 +313,9 @@ class InformationTest(CliTest):
 
     def test_help_goes_to_standard_output_and_has_examples(self):
         for command in ([], ["send"], ["dump"], ["buses"], ["bridge"], ["bridge", "show"],
-                        ["bridge", "set"], ["bridge", "identify"], ["bridge", "attach"]):
+                        ["bridge", "set"], ["bridge", "identify"], ["bridge", "attach"], ["kind"],
+                        ["kind", "header"], ["kind", "js"], ["kind", "md"], ["robot"], ["robot", "dbc"],
+                        ["robot", "check"]):
             for option in ("--help", "-h"):
                 status, out, err = self.run_cli(*command, option)
                 self.assertEqual((status, err), (0, ""))
@@ -300,7 +325,7 @@ class InformationTest(CliTest):
 
 
     def test_help_is_a_command_too(self):
-        for command in ([], ["send"], ["dump"], ["buses"], ["bridge"], ["bridge", "set"]):
+        for command in ([], ["send"], ["dump"], ["buses"], ["bridge"], ["bridge", "set"], ["kind"], ["robot", "dbc"]):
             self.assertEqual(self.run_cli("help", *command), self.run_cli(*command, "--help"))
 
 

@@ -29,7 +29,7 @@ _roio_cli_arguments_before() {
   for ((index = $1; index < COMP_CWORD; ++index)); do
     case ${COMP_WORDS[index]} in
       --from | --class | --count | --interval | --timeout | -n | -T | -t) ((++index)) ;;
-      --bitrate | --mode | --address | --seconds) ((++index)) ;;
+      --bitrate | --mode | --address | --seconds | -o | --output) ((++index)) ;;
       -?*) ;;
       *) ((++count)) ;;
     esac
@@ -40,7 +40,7 @@ _roio_cli_arguments_before() {
 _roio_cli_words() {
   local command=${COMP_WORDS[1]} previous=${COMP_WORDS[COMP_CWORD - 1]}
   if [ "$COMP_CWORD" -eq 1 ]; then
-    echo send dump buses hub bridge help --help --version
+    echo send dump buses hub bridge kind robot help --help --version
     return
   fi
   case $previous in
@@ -58,7 +58,9 @@ _roio_cli_words() {
     send:* | dump:*) ;;
     hub:*) _roio_cli_buses; return ;;
     bridge:*) _roio_cli_bridge_words; return ;;
-    help:*) [ "$COMP_CWORD" -eq 2 ] && echo send dump buses hub bridge; return ;;
+    kind:*) _roio_cli_kind_words; return ;;
+    robot:*) _roio_cli_robot_words; return ;;
+    help:*) [ "$COMP_CWORD" -eq 2 ] && echo send dump buses hub bridge kind robot; return ;;
     *) return ;;
   esac
   if [ "$(_roio_cli_arguments_before 2)" -eq 0 ]; then
@@ -85,6 +87,45 @@ _roio_cli_bridge_words() {
     show:0 | set:0 | identify:0 | attach:0) _roio_cli_ports ;;
     attach:1) _roio_cli_buses ;;
   esac
+}
+
+# Files whose names end so, and folders on the way to them.
+_roio_cli_files() {
+  compgen -f -X "!*$1" -- "$current"
+  compgen -d -S / -- "$current"
+}
+
+_roio_cli_kind_words() {
+  local action=${COMP_WORDS[2]}
+  if [ "$COMP_CWORD" -eq 2 ]; then
+    echo header js md --help
+    return
+  fi
+  case $previous in
+    -o | --output) compgen -f -- "$current"; return ;;
+  esac
+  case $action:$current in
+    header:-*) echo --output --check --help; return ;;
+    js:-*) echo --output --check --help; return ;;
+    md:-*) echo --output --check --help; return ;;
+  esac
+  [ "$(_roio_cli_arguments_before 3)" -eq 0 ] && _roio_cli_files .kind.json
+}
+
+_roio_cli_robot_words() {
+  local action=${COMP_WORDS[2]}
+  if [ "$COMP_CWORD" -eq 2 ]; then
+    echo check dbc --help
+    return
+  fi
+  case $previous in
+    -o | --output) compgen -f -- "$current"; return ;;
+  esac
+  case $action:$current in
+    check:-*) echo --help; return ;;
+    dbc:-*) echo --output --check --help; return ;;
+  esac
+  [ "$(_roio_cli_arguments_before 3)" -eq 0 ] && _roio_cli_files .json
 }
 
 _roio_cli() {

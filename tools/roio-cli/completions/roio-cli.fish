@@ -33,7 +33,7 @@ function __roio_cli_is_argument
             set skip 0
         else
             switch $word
-                case --from --class --count --interval --timeout -n -T -t --bitrate --mode --address --seconds
+                case --from --class --count --interval --timeout -n -T -t --bitrate --mode --address --seconds -o --output
                     set skip 1
                 case '-?*'
                 case '*'
@@ -55,6 +55,16 @@ function __roio_cli_bridge
     test "$words[2]" = bridge; and test "$words[3]" = "$argv[1]"
 end
 
+# The same of `kind` and `robot`.
+function __roio_cli_kind
+    set -l words (commandline -opc)
+    test "$words[2]" = kind; and test "$words[3]" = "$argv[1]"
+end
+function __roio_cli_robot
+    set -l words (commandline -opc)
+    test "$words[2]" = robot; and test "$words[3]" = "$argv[1]"
+end
+
 # Whether it is the N-th from 0 after the one given of bridge's commands.
 function __roio_cli_bridge_argument
     __roio_cli_bridge $argv[1]; and __roio_cli_is_argument $argv[2] 4
@@ -66,6 +76,8 @@ complete -c roio-cli -n __fish_use_subcommand -a dump -d 'Show what is on a bus'
 complete -c roio-cli -n __fish_use_subcommand -a buses -d 'List the buses that can be opened'
 complete -c roio-cli -n __fish_use_subcommand -a hub -d 'Carry a local bus until a signal'
 complete -c roio-cli -n __fish_use_subcommand -a bridge -d 'Show, set and use a bridge on a serial port'
+complete -c roio-cli -n __fish_use_subcommand -a kind -d 'Make code and pages from messages'
+complete -c roio-cli -n __fish_use_subcommand -a robot -d 'Look at a robot file, and make a DBC'
 complete -c roio-cli -n __fish_use_subcommand -a help -d 'Print the help of a command'
 complete -c roio-cli -n __fish_use_subcommand -l version -d 'Print the version and end'
 complete -c roio-cli -s h -l help -d 'Print help and end'
@@ -90,7 +102,7 @@ complete -c roio-cli -n '__fish_seen_subcommand_from dump' -l errors -d 'Show er
 complete -c roio-cli -n '__fish_seen_subcommand_from dump' -s v -l verbose -d 'Say when listening, and counts'
 complete -c roio-cli -n '__fish_seen_subcommand_from dump; and not __roio_cli_needs_bus' -a 'to= from= urgent normal class=message class=system class=stream or'
 
-complete -c roio-cli -n 'set -l words (commandline -opc); test (count $words) = 2; and test $words[2] = help' -a 'send dump buses hub bridge'
+complete -c roio-cli -n 'set -l words (commandline -opc); test (count $words) = 2; and test $words[2] = help' -a 'send dump buses hub bridge kind robot'
 
 complete -c roio-cli -n '__fish_seen_subcommand_from hub' -l bitrate -x -d 'Pace of the bus, bit/s'
 complete -c roio-cli -n '__fish_seen_subcommand_from hub; and __roio_cli_needs_bus' -a '(__roio_cli_buses)'
@@ -111,3 +123,24 @@ complete -c roio-cli -n '__roio_cli_bridge set' -l mode -x -a 'normal listen loo
 complete -c roio-cli -n '__roio_cli_bridge set' -l address -x -a none -d 'That it answers to as a node'
 complete -c roio-cli -n '__roio_cli_bridge identify' -l seconds -x -d 'How long; 0 ends it'
 complete -c roio-cli -n '__roio_cli_bridge attach' -s v -l verbose -d 'Say the counts once a second'
+
+complete -c roio-cli -n '__roio_cli_kind ""' -a header -d 'A C++11 header'
+complete -c roio-cli -n '__roio_cli_kind ""' -a js -d 'An ES module'
+complete -c roio-cli -n '__roio_cli_kind ""' -a md -d 'A page for people'
+complete -c roio-cli -n '__roio_cli_kind header' -s o -l output -r -F -d 'Write to this file'
+complete -c roio-cli -n '__roio_cli_kind header' -l check -d 'Write nothing; exit 1 when that file is stale'
+complete -c roio-cli -n '__roio_cli_kind header; and __roio_cli_is_argument 0 4' -a '(__fish_complete_suffix .kind.json)'
+complete -c roio-cli -n '__roio_cli_kind js' -s o -l output -r -F -d 'Write to this file'
+complete -c roio-cli -n '__roio_cli_kind js' -l check -d 'Write nothing; exit 1 when that file is stale'
+complete -c roio-cli -n '__roio_cli_kind js; and __roio_cli_is_argument 0 4' -a '(__fish_complete_suffix .kind.json)'
+complete -c roio-cli -n '__roio_cli_kind md' -s o -l output -r -F -d 'Write to this file'
+complete -c roio-cli -n '__roio_cli_kind md' -l check -d 'Write nothing; exit 1 when that file is stale'
+complete -c roio-cli -n '__roio_cli_kind md; and __roio_cli_is_argument 0 4' -a '(__fish_complete_suffix .kind.json)'
+
+complete -c roio-cli -n '__roio_cli_robot ""' -a check -d 'What a robot has'
+complete -c roio-cli -n '__roio_cli_robot ""' -a dbc -d 'A DBC file'
+complete -c roio-cli -n '__roio_cli_robot dbc' -s o -l output -r -F -d 'Write to this file'
+complete -c roio-cli -n '__roio_cli_robot dbc' -l check -d 'Write nothing; exit 1 when that file is stale'
+for command in check dbc
+    complete -c roio-cli -n "__roio_cli_robot $command; and __roio_cli_is_argument 0 4" -a '(__fish_complete_suffix .json)'
+end

@@ -8,6 +8,7 @@
 #include "bridge/words.hpp"
 #include "buses/hub_words.hpp"
 #include "dump/words.hpp"
+#include "kind/words.hpp"
 #include "program/words.hpp"
 #include "send/words.hpp"
 
@@ -21,6 +22,7 @@ constexpr const char* main_examples = R"(Examples:
   roio-cli dump serial:auto                    a bridge on a serial port
   roio-cli buses                               what there is to be opened
   roio-cli bridge attach /dev/ttyACM0 vcan0    a bridge, for every Linux program
+  roio-cli robot check robot.json              what a robot has
 
 BUS is a CAN interface (can0), serial:DEVICE, a bridge on a serial port, or
 local:NAME, a bus between the programs of one user on this machine;
@@ -41,7 +43,7 @@ constexpr const char* help_examples = R"(Examples:
   roio-cli help send
   roio-cli help bridge set)";
 
-constexpr const char* commands = "send, dump, buses, hub, bridge or help";
+constexpr const char* commands = "send, dump, buses, hub, bridge, kind, robot or help";
 
 /// The words with `help COMMAND` said as `COMMAND --help`.
 std::vector<const char*> with_help(int argc, const char* const* argv) {
@@ -80,7 +82,7 @@ const CLI::App& last_command(const CLI::App& app) {
 
 Command parse_command_line(int argc, const char* const* argv) {
   CLI::App app("Sends and shows Roio messages on a CAN bus, and looks after bridges.");
-  prepare(app, "send|dump|buses|hub|bridge [OPTIONS] ...", main_examples);
+  prepare(app, "send|dump|buses|hub|bridge|kind|robot [OPTIONS] ...", main_examples);
   bool version = false;
   app.add_flag("--version", version, "Print the version and end")->disable_flag_override();
   app.require_subcommand(0, 1);
@@ -91,6 +93,8 @@ Command parse_command_line(int argc, const char* const* argv) {
   const CLI::Option* buses_json = flag(buses_app, "--json", "JSON lines");
   const HubWords hub_words(app);
   const BridgeWords bridge_words(app);
+  const KindWords kind_words(app);
+  const RobotWords robot_words(app);
   prepare(*app.add_subcommand("help", "Print the help of a command"), "help [COMMAND...]",
           help_examples);
 
@@ -100,6 +104,8 @@ Command parse_command_line(int argc, const char* const* argv) {
   } catch (const CLI::CallForHelp&) {
     refuse_rest(app, "", commands);
     bridge_words.refuse_unknown();
+    kind_words.refuse_unknown();
+    robot_words.refuse_unknown();
     return Information{app.help()};
   } catch (const CLI::ArgumentMismatch& error) {
     refuse_values(app, error.what());
@@ -127,6 +133,12 @@ Command parse_command_line(int argc, const char* const* argv) {
   }
   if (bridge_words.parsed()) {
     return bridge_words.parse();
+  }
+  if (kind_words.parsed()) {
+    return kind_words.parse();
+  }
+  if (robot_words.parsed()) {
+    return robot_words.parse();
   }
   refuse("", std::string("expected a command: ") + commands);
 }

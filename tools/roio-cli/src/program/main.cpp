@@ -47,6 +47,15 @@ int run(const BridgeSetOptions& options) {
 int run(const BridgeIdentifyOptions& options) {
   return bridge_identify(options);
 }
+int run(const KindOptions& options) {
+  return make_from_kind(options);
+}
+int run(const RobotDbcOptions& options) {
+  return make_dbc(options);
+}
+int run(const RobotCheckOptions& options) {
+  return check_robot(options);
+}
 
 }  // namespace
 }  // namespace roio::cli
