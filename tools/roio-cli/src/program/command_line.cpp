@@ -10,6 +10,7 @@
 #include "dump/words.hpp"
 #include "program/words.hpp"
 #include "send/words.hpp"
+#include "top/words.hpp"
 
 namespace roio::cli {
 namespace {
@@ -86,6 +87,7 @@ Command parse_command_line(int argc, const char* const* argv) {
   app.require_subcommand(0, 1);
   const SendWords send_words(app);
   const DumpWords dump_words(app);
+  const TopWords top_words(app);
   CLI::App& buses_app = *app.add_subcommand("buses", "List the buses that can be opened");
   prepare(buses_app, "buses [OPTIONS]", buses_examples);
   const CLI::Option* buses_json = flag(buses_app, "--json", "JSON lines");
@@ -117,6 +119,9 @@ Command parse_command_line(int argc, const char* const* argv) {
   }
   if (dump_words.parsed()) {
     return dump_words.parse();
+  }
+  if (top_words.parsed()) {
+    return top_words.parse();
   }
   if (buses_app.parsed()) {
     refuse_rest(buses_app, "buses");

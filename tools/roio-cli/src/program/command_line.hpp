@@ -11,6 +11,7 @@
 #include "buses/hub.hpp"
 #include "dump/dump.hpp"
 #include "send/send.hpp"
+#include "top/top.hpp"
 
 namespace roio::cli {
 
@@ -20,8 +21,8 @@ struct Information {
 };
 
 using Command =
-    std::variant<Information, SendOptions, DumpOptions, BusesOptions, HubOptions, BridgeShowOptions,
-                 BridgeSetOptions, BridgeIdentifyOptions, BridgeAttachOptions>;
+    std::variant<Information, SendOptions, DumpOptions, TopOptions, BusesOptions, HubOptions,
+                 BridgeShowOptions, BridgeSetOptions, BridgeIdentifyOptions, BridgeAttachOptions>;
 
 /// @throws UsageError: what was wrong with the words, and what was expected.
 Command parse_command_line(int argc, const char* const* argv);

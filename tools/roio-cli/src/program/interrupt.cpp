@@ -43,6 +43,14 @@ extern "C" void on_signal(int number) {
   errno = saved_errno;
 }
 
+/// For poll(): rounded up, so that a wait does not spin at its end.
+int poll_ms(std::chrono::steady_clock::time_point until) {
+  const auto left =
+      std::chrono::ceil<std::chrono::milliseconds>(until - std::chrono::steady_clock::now());
+  constexpr std::int64_t longest = std::numeric_limits<int>::max();
+  return static_cast<int>(std::clamp<std::int64_t>(left.count(), 0, longest));
+}
+
 enum class Woken { signal, readable, timeout };
 Woken wait_for(int fd, int timeout_ms) {
   std::array<pollfd, 2> fds{{{wake_pipe[0], POLLIN, 0}, {fd, POLLIN, 0}}};
@@ -77,17 +85,30 @@ int Interrupt::signal() noexcept {
 
 bool Interrupt::sleep_until(std::chrono::steady_clock::time_point until) {
   for (;;) {
-    const auto left =
-        std::chrono::ceil<std::chrono::milliseconds>(until - std::chrono::steady_clock::now());
-    if (left.count() <= 0) {
+    const int left_ms = poll_ms(until);
+    if (left_ms == 0) {
       return caught == 0;
     }
-    constexpr std::int64_t longest = std::numeric_limits<int>::max();
-    if (wait_for(-1, static_cast<int>(std::min<std::int64_t>(left.count(), longest))) ==
-        Woken::signal) {
+    if (wait_for(-1, left_ms) == Woken::signal) {
       return false;
     }
   }
+}
+
+void Interrupt::also(int number) {
+  catch_interrupt(number, on_signal);
+}
+
+bool Interrupt::wait(std::span<pollfd> fds, std::chrono::steady_clock::time_point until) {
+  std::array<pollfd, max_fds + 1> all{};
+  const std::size_t count = std::min(fds.size(), max_fds);
+  std::copy_n(fds.begin(), count, all.begin());
+  all[count] = {wake_pipe[0], POLLIN, 0};
+  const int ready = ::poll(all.data(), count + 1, poll_ms(until));
+  for (std::size_t i = 0; i < count; ++i) {
+    fds[i].revents = ready > 0 ? all[i].revents : short{0};
+  }
+  return caught == 0;
 }
 
 bool Interrupt::wait_readable(int fd) {

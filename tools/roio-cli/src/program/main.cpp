@@ -26,6 +26,10 @@ int run(const DumpOptions& options) {
   const Interrupt interrupt;
   return dump(options);
 }
+int run(const TopOptions& options) {
+  const Interrupt interrupt;
+  return top(options);
+}
 int run(const HubOptions& options) {
   const Interrupt interrupt;
   return hub(options);
