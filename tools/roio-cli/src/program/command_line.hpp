@@ -5,11 +5,14 @@
 #include <string>
 #include <variant>
 
+#include "ask/ask.hpp"
 #include "attach/attach.hpp"
 #include "bridge/bridge.hpp"
 #include "buses/buses.hpp"
 #include "buses/hub.hpp"
 #include "dump/dump.hpp"
+#include "gen/check.hpp"
+#include "gen/gen.hpp"
 #include "send/send.hpp"
 #include "top/top.hpp"
 
@@ -21,8 +24,9 @@ struct Information {
 };
 
 using Command =
-    std::variant<Information, SendOptions, DumpOptions, TopOptions, BusesOptions, HubOptions,
-                 BridgeShowOptions, BridgeSetOptions, BridgeIdentifyOptions, BridgeAttachOptions>;
+    std::variant<Information, SendOptions, AskOptions, DumpOptions, TopOptions, GenOptions,
+                 CheckOptions, BusesOptions, HubOptions, AttachOptions, BridgeShowOptions,
+                 BridgeSetOptions, BridgeIdentifyOptions>;
 
 /// @throws UsageError: what was wrong with the words, and what was expected.
 Command parse_command_line(int argc, const char* const* argv);

@@ -244,22 +244,6 @@ Unsent send_lines(const SendOptions& options, Sender& sender) {
   return lines.unsent();
 }
 
-// What send() accepted and close() could not hand over.
-void close(const SendOptions& options, Bus& bus, std::uint64_t sent) {
-  wait_for_outcomes(bus);
-  if (has_given_up(bus)) {
-    throw Failure(why_not_sent(bus, options.timeout, sent));
-  }
-  bus.close();
-  if (const std::uint64_t unheard = bus.statistics().unheard; unheard > 0) {
-    note(bus.name() + ": nobody else was there to have " + count_of(unheard, "message"));
-  }
-  if (const std::uint64_t unsent = bus.statistics().unsent; unsent > 0) {
-    throw Failure(bus.name() + ": " + count_of(unsent, "message") +
-                  " not handed over before the bus closed");
-  }
-}
-
 std::string passed_over(const Unsent& unsent) {
   std::string text;
   for (const auto& [count, what] :
@@ -308,7 +292,7 @@ int send(const SendOptions& options) {
   } else {
     unsent = send_lines(options, sender);
   }
-  close(options, *bus, sender.sent());
+  finish_sending(*bus, options.timeout, sender.sent());
   return finish(options, sender, unsent);
 }
 

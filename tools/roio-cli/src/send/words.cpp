@@ -5,9 +5,9 @@
 #include <roio/candump_log.hpp>
 #include <roio/message.hpp>
 #include <roio/text.hpp>
-#include <span>
 
 #include "program/words.hpp"
+#include "send/message_words.hpp"
 
 namespace roio::cli {
 namespace {
@@ -28,45 +28,6 @@ Without DATA the message is empty. Lines read from standard input say themselves
 where they go. A line that cannot be understood is named on standard error, the
 others are sent, and the exit status is 1. Quote '0.*' for the shell, or write
 0.255. A local bus on which nobody listens is told on standard error.)";
-
-constexpr const char* empty_message = "; without DATA the message is empty";
-
-Bytes parse_decimal(std::span<const std::string> words) {
-  if (words.empty()) {
-    throw UsageError(std::string("--dec: expected 1 to 8 numbers 0..255 after DEST") +
-                     empty_message);
-  }
-  Bytes bytes;
-  if (words.size() > bytes.data.size()) {
-    throw UsageError("DATA: expected at most 8 bytes, found " + std::to_string(words.size()));
-  }
-  for (const std::string& word : words) {
-    bytes.data[bytes.length++] =
-        static_cast<std::uint8_t>(parse_number("DATA with --dec", word, 0, 255));
-  }
-  return bytes;
-}
-
-// In one word, or in several, as dump prints them.
-Bytes parse_hexadecimal(std::span<const std::string> words) {
-  std::string text;
-  for (const std::string& word : words) {
-    if (word.empty()) {
-      throw UsageError(std::string("DATA: expected hexadecimal digits such as 5A2D00, found \"\"") +
-                       empty_message);
-    }
-    text += (text.empty() ? "" : " ") + word;
-  }
-  return value_or_refuse(parse_hex(text));
-}
-
-MessageClass parse_sendable_class(const std::string& text) {
-  const auto message_class = parse_class(text);
-  if (!message_class || *message_class == MessageClass::reserved) {
-    throw UsageError("--class: expected message, system or stream, found " + quote(text));
-  }
-  return *message_class;
-}
 
 bool is_frame(const std::string& destination) {
   return destination.find('#') != std::string::npos;
@@ -168,7 +129,7 @@ Frame SendWords::parse_message(Address source) const {
   message.header.source = source;
   message.header.priority = urgent_->count() > 0 ? Priority::urgent : Priority::normal;
   message.header.message_class = parse_sendable_class(class_text_);
-  const Bytes bytes = dec_->count() > 0 ? parse_decimal(data_) : parse_hexadecimal(data_);
+  const Bytes bytes = parse_data_words(data_, dec_->count() > 0);
   message.length = bytes.length;
   std::copy(bytes.data.begin(), bytes.data.end(), message.data);
   Frame frame{};

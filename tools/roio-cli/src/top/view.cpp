@@ -84,9 +84,14 @@ Line keys_line(const View& view, std::size_t first, std::size_t shown, std::size
       rows > shown ? " rows " + std::to_string(first + 1) + "-" + std::to_string(first + shown) +
                          " of " + std::to_string(rows)
                    : "";
-  std::string keys = std::string("q quit  s sort: ") +
-                     sort_names.at(static_cast<std::size_t>(view.sort)) +
-                     "  r reverse  p " + (view.paused ? "go on" : "pause") + "  c clear  h help";
+  constexpr std::size_t needed_by_all = 72;
+  const std::string sort =
+      std::string("s sort: ") + sort_names.at(static_cast<std::size_t>(view.sort));
+  const std::string keys =
+      size.columns < needed_by_all
+          ? "q quit  h help  " + sort
+          : "q quit  " + sort + "  r reverse  p " + (view.paused ? "go on" : "pause") +
+                "  c clear  h help";
   // The range says that there is more than is seen: rather some keys less.
   const std::size_t room = size.columns - std::min(size.columns, range.size());
   line.add_left(keys, room, Style::bar);

@@ -1,0 +1,24 @@
+/// `roio-cli ask`: sends a message, and prints what its receiver answers.
+#ifndef ROIO_CLI_ASK_HPP
+#define ROIO_CLI_ASK_HPP
+
+#include <chrono>
+#include <roio/message.hpp>
+#include <string>
+
+namespace roio::cli {
+
+struct AskOptions {
+  std::string bus;
+  Message message{};
+  std::chrono::milliseconds timeout{1000};  ///< Of the question and its answer together.
+  bool json = false;
+};
+
+/// @return the exit status; 1 when no answer came in time.
+/// @throws Failure (not sent in time), BrokenPipe, std::system_error.
+int ask(const AskOptions& options);
+
+}  // namespace roio::cli
+
+#endif
