@@ -61,13 +61,13 @@ std::string joined_already(const std::string& what) {
 
 }  // namespace
 
-std::string full_name(const Bus& bus, const std::string& url) {
+std::string full_name(Bus& bus, const std::string& url) {
   const BusUrl parsed = *parse_bus_url(url);
   switch (parsed.kind) {
     case BusUrl::Kind::local:
       return "local:" + folder_of_local_buses() + "/" + parsed.target;
     case BusUrl::Kind::serial:
-      if (const Bridge* const bridge = bridge_of(const_cast<Bus&>(bus))) {
+      if (const Bridge* const bridge = bridge_of(bus)) {
         return "serial:" + true_path(bridge->info().port);
       }
       break;

@@ -10,7 +10,7 @@ namespace roio::cli {
 
 /// The name of a bus that is the same whoever says it: where a local bus's folder is, which device
 /// a port is.
-std::string full_name(const Bus& bus, const std::string& url);
+std::string full_name(Bus& bus, const std::string& url);
 
 /// A name that one program at a time can have.
 class Claim {

@@ -44,9 +44,9 @@ constexpr std::array<const char*, 9> help_lines{{
 
 /// Source, then destination; what is no message stands behind those that are.
 auto by_source(const TrafficRow& row) {
-  const Header header = unpack_id(row.last.id);
-  Message message{};
+  Message message{};  // of what is none, all zeros: its identifier alone counts
   const bool foreign = to_message(row.last, message) != Status::ok;
+  const Header& header = message.header;
   return std::tuple(foreign, header.source.subnet, header.source.node, header.destination.subnet,
                     header.destination.node, tagged_id(row.last), row.last.length);
 }
