@@ -16,7 +16,8 @@ def read(*path):
         return file.read()
 
 
-COMMANDS = ["send", "dump", "buses", "hub", "bridge show", "bridge set", "bridge identify", "bridge attach"]
+COMMANDS = ["send", "ask", "dump", "top", "gen", "buses", "hub", "attach", "bridge show", "bridge set",
+            "bridge identify", "bridge attach"]
 
 
 class SyncTest(CliTest):
@@ -62,6 +63,7 @@ class SyncTest(CliTest):
         text = read("completions", "roio-cli.fish")
         for command in COMMANDS:
             of = (command.replace("bridge", "__roio_cli_bridge") if " " in command else
+                  "__roio_cli_attach" if command == "attach" else
                   "__fish_seen_subcommand_from " + command)
             found = re.findall(rf"-n '{of}' (?:-s (\w) )?(?:-l ([\w-]+))?", text)
             offered = {"--" + long if long else "-" + short for short, long in found if short or long}
@@ -71,7 +73,7 @@ class SyncTest(CliTest):
 class ManualTest(CliTest):
     def test_pages_are_clean(self):
         pages = sorted(glob.glob(os.path.join(TOOL, "man", "*.1")))
-        self.assertEqual(len(pages), 6)
+        self.assertEqual(len(pages), 10)
         done = subprocess.run(
             ["mandoc", "-Tlint", "-Wwarning", *pages], capture_output=True, text=True, timeout=GUARD
         )
@@ -90,7 +92,8 @@ class CompletionTest(CliTest):
 
     # command line, what is offered: bash replaces what follows the last ':' or '='
     LINES = [
-        ("roio-cli ", ["--help", "--version", "bridge", "buses", "dump", "help", "hub", "send"]),
+        ("roio-cli ", ["--help", "--version", "ask", "attach", "bridge", "buses", "dump", "gen", "help", "hub",
+                       "send", "top"]),
         ("roio-cli d", ["dump"]),
         ("roio-cli send --cl", ["--class"]),
         ("roio-cli send --wait lo", ["local:robot"]),
@@ -112,6 +115,16 @@ class CompletionTest(CliTest):
         ("roio-cli bridge set --mode listen a", ["auto"]),
         ("roio-cli bridge set auto --addr", ["--address"]),
         ("roio-cli bridge attach auto ", ["local:robot"]),
+        ("roio-cli a", ["ask", "attach"]),
+        ("roio-cli ask --timeout 5 lo", ["local:robot"]),
+        ("roio-cli ask --class s", ["stream", "system"]),
+        ("roio-cli top --bitrate 500000 lo", ["local:robot"]),
+        ("roio-cli gen --to ", ["random"]),
+        ("roio-cli gen --se", ["--seed"]),
+        ("roio-cli gen --size 4-8 --to random --load 80% lo", ["local:robot"]),
+        ("roio-cli attach lo", ["local:robot"]),
+        ("roio-cli attach serial:auto lo", ["local:robot"]),
+        ("roio-cli attach --v", ["--verbose"]),
     ]
 
     def test_bash(self):

@@ -12,9 +12,9 @@ constexpr const char* examples = R"(Examples:
 
 Every frame goes both ways until a signal ends it. Either bus may go and come
 back meanwhile, which is told; what one side does not take within a second is
-lost and counted. At the end it says what was forwarded, and what was lost where.
-Two buses that are joined already, also by way of others, are refused; when
-frames go round all the same, that is noticed, and ends it.)";
+lost and counted. At the end it says what was forwarded, and what was lost
+where. Two buses that are joined already, also by way of others, are refused;
+when frames go round all the same, that is noticed, and ends it.)";
 
 }  // namespace
 

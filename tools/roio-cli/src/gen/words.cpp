@@ -21,10 +21,10 @@ constexpr const char* examples = R"(Examples:
 
 The messages have 4 to 8 bytes: the generator's id, a check, a running number.
 Several generators at once are told apart by source and id. --check says of each
-how many were received, lost, doubled and out of order; the exit status is 1 when
-any were, or when none came. It may start late: then it says from which number
-on. What was lost after the last that came it cannot know: --count N says how
-many have to come.)";
+how many were received, lost, doubled and out of order; the exit status is 1
+when any were, or when none came. It may start late: then it says from which
+number on. What was lost after the last that came it cannot know: --count N says
+how many have to come.)";
 
 constexpr std::uint64_t most = std::numeric_limits<std::uint32_t>::max();
 

@@ -61,12 +61,13 @@ bool output_is_terminal() noexcept {
   return ::isatty(STDOUT_FILENO) == 1;
 }
 
-Terminal::Terminal() : has_keys_(::tcgetattr(STDIN_FILENO, &before_) == 0) {
+Terminal::Terminal() {
   if (cannot_be_drawn_on()) {
     throw UsageError(
         "this terminal cannot be drawn on (TERM is not set, or dumb); with --json, or into a pipe, "
         "top writes lines");
   }
+  has_keys_ = ::tcgetattr(STDIN_FILENO, &before_) == 0;
   Interrupt::also(SIGHUP);
   for (const int number : {SIGWINCH, SIGTSTP, SIGCONT}) {
     handle(number, on_terminal_signal);

@@ -50,8 +50,8 @@ class Terminal {
   void leave();
   void write_all(std::string text);
 
-  bool has_keys_;
   termios before_{};
+  bool has_keys_ = false;
   std::vector<std::string> shown_;  // what stands there now
   Size shown_size_{0, 0};
   std::string pending_;  // has not gone out yet
