@@ -26,12 +26,15 @@ if WITH_BRIDGE:
 DOCUMENTS = os.environ["ROIO_CLI_DOCUMENTS"].split(":")
 PORT = "/dev/ttyACM0"
 
-# Stands for roio-cli in the background: says in a file when a dump listens.
+# Stands for roio-cli in the background: says in a file when a dump, or a check, listens.
 LISTENER = r"""#!/bin/bash
-[ "$1" = dump ] || exec "$ROIO_CLI" "$@"
-shift
+case "$1 $2" in
+  'gen --check') shift 2; listen=(gen --check -v) ;;
+  dump\ *) shift; listen=(dump -v) ;;
+  *) exec "$ROIO_CLI" "$@" ;;
+esac
 exec 3>&1
-"$ROIO_CLI" dump -v "$@" 2>&1 >&3 3>&- | while IFS= read -r line; do
+"$ROIO_CLI" "${listen[@]}" "$@" 2>&1 >&3 3>&- | while IFS= read -r line; do
   case $line in
     *': listening') : >"$LISTENING" ;;
     *' shown, 0 lost') ;;
@@ -83,7 +86,7 @@ def session(commands):
     script, background = [ATTACH], 0
     commands = [command for command in commands if not command.startswith("sleep ")]
     for command, follower in zip(commands, commands[1:] + [""]):
-        if " bridge attach " in command:
+        if " attach " in command and command.endswith("&"):
             background += 1
             script.append(f'attach "{command[:-1].strip()}" "$OUT.{background}"')
         elif command.endswith("&"):

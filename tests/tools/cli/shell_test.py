@@ -16,8 +16,8 @@ def read(*path):
         return file.read()
 
 
-COMMANDS = ["send", "dump", "buses", "hub", "bridge show", "bridge set", "bridge identify", "bridge attach",
-            "kind header", "kind js", "kind md", "robot dbc", "robot check"]
+COMMANDS = ["send", "ask", "dump", "top", "gen", "buses", "hub", "attach", "bridge show", "bridge set",
+            "bridge identify", "bridge attach", "kind header", "kind js", "kind md", "robot dbc", "robot check"]
 
 
 class SyncTest(CliTest):
@@ -62,7 +62,9 @@ class SyncTest(CliTest):
     def test_fish_offers_every_option(self):
         text = read("completions", "roio-cli.fish")
         for command in COMMANDS:
-            of = ("__roio_cli_" if " " in command else "__fish_seen_subcommand_from ") + command
+            of = ("__roio_cli_" + command if " " in command else
+                  "__roio_cli_attach" if command == "attach" else
+                  "__fish_seen_subcommand_from " + command)
             found = re.findall(rf"-n '{of}' (?:-s (\w) )?(?:-l ([\w-]+))?", text)
             offered = {"--" + long if long else "-" + short for short, long in found if short or long}
             self.assertEqual(offered, self.options(command), command)
@@ -71,7 +73,7 @@ class SyncTest(CliTest):
 class ManualTest(CliTest):
     def test_pages_are_clean(self):
         pages = sorted(glob.glob(os.path.join(TOOL, "man", "*.1")))
-        self.assertEqual(len(pages), 8)
+        self.assertEqual(len(pages), 12)
         done = subprocess.run(
             ["mandoc", "-Tlint", "-Wwarning", *pages], capture_output=True, text=True, timeout=GUARD
         )
@@ -90,8 +92,8 @@ class CompletionTest(CliTest):
 
     # command line, what is offered: bash replaces what follows the last ':' or '='
     LINES = [
-        ("roio-cli ", ["--help", "--version", "bridge", "buses", "dump", "help", "hub", "kind",
-                       "robot", "send"]),
+        ("roio-cli ", ["--help", "--version", "ask", "attach", "bridge", "buses", "dump", "gen", "help", "hub",
+                       "kind", "robot", "send", "top"]),
         ("roio-cli d", ["dump"]),
         ("roio-cli send --cl", ["--class"]),
         ("roio-cli send --wait lo", ["local:robot"]),
@@ -117,6 +119,16 @@ class CompletionTest(CliTest):
         ("roio-cli bridge set --mode listen a", ["auto"]),
         ("roio-cli bridge set auto --addr", ["--address"]),
         ("roio-cli bridge attach auto ", ["local:robot"]),
+        ("roio-cli a", ["ask", "attach"]),
+        ("roio-cli ask --timeout 5 lo", ["local:robot"]),
+        ("roio-cli ask --class s", ["stream", "system"]),
+        ("roio-cli top --bitrate 500000 lo", ["local:robot"]),
+        ("roio-cli gen --to ", ["random"]),
+        ("roio-cli gen --se", ["--seed"]),
+        ("roio-cli gen --size 4-8 --to random --load 80% lo", ["local:robot"]),
+        ("roio-cli attach lo", ["local:robot"]),
+        ("roio-cli attach serial:auto lo", ["local:robot"]),
+        ("roio-cli attach --v", ["--verbose"]),
     ]
 
     def test_bash(self):

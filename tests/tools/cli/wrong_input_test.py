@@ -14,11 +14,12 @@ EMPTY = "; without DATA the message is empty"
 WORDS = ("expected to=SUBNET.NODE, from=SUBNET.NODE, urgent, normal, class=message|system|stream, "
          "ID:MASK, ID~MASK or the word or")
 
+COMMANDS = "send, ask, dump, top, gen, buses, hub, attach, bridge, kind, robot or help"
+
 # command line, the line on standard error
 WRONG = [
-    ("", "expected a command: send, dump, buses, hub, bridge, kind, robot or help; `roio-cli --help` shows how"),
-    ("snd local:x",
-     'unknown command "snd": expected send, dump, buses, hub, bridge, kind, robot or help; `roio-cli --help` shows how'),
+    ("", f"expected a command: {COMMANDS}; `roio-cli --help` shows how"),
+    ("snd local:x", f'unknown command "snd": expected {COMMANDS}; `roio-cli --help` shows how'),
     ("--foo", 'unknown option "--foo"; `roio-cli --help` shows how'),
     # send: what is missing
     ("send", "expected BUS, DEST and DATA" + SEND_HELP),
@@ -155,9 +156,52 @@ WRONG = [
     ("dump local:x or", 'bad filter "or": expected a filter on either side of it'),
     ("dump local:x urgent 1:C00007FF",
      'no frame can satisfy these filters together; put "or" between choices'),
+    # ask
+    ("ask", "expected BUS, DEST and DATA; `roio-cli ask --help` shows how"),
+    ("ask local:x", "expected DEST after BUS: SUBNET.NODE or SUBNET.*; `roio-cli ask --help` shows how"),
+    ("ask local:x -", 'address "-": no dot; expected SUBNET.NODE, such as 0.2'),
+    ("ask local:x 123#11", 'address "123#11": no dot; expected SUBNET.NODE, such as 0.2'),
+    ("ask local:x 0.2 5A2", 'data "5A2": odd number of hex digits; expected two per byte'),
+    ("ask --dec local:x 0.2 256", 'DATA with --dec: expected a whole number 0..255, found "256"'),
+    ("ask --from 0.* local:x 0.2",
+     '--from: address "0.*": a broadcast is no address of a node\'s own; expected node 0..254'),
+    ("ask --timeout 0 local:x 0.2", '--timeout: expected a whole number 1..86400000, found "0"'),
+    ("ask --class fast local:x 0.2", '--class: expected message, system or stream, found "fast"'),
+    # top
+    ("top", "expected BUS; `roio-cli top --help` shows how"),
+    ("top --interval 9 local:x", '--interval: expected a whole number 10..86400000, found "9"'),
+    ("top --bitrate 999 local:x", '--bitrate: expected a whole number 1000..1000000, found "999"'),
+    ("top -n 0 local:x", '-n: expected a whole number 1..4294967295, found "0"'),
+    ("top local:x to=0.2", 'expected no more words, found "to=0.2"; `roio-cli top --help` shows how'),
+    # gen
+    ("gen", "expected BUS; `roio-cli gen --help` shows how"),
+    ("gen --size 3 local:x", "--size: 3 bytes are too short for a number; expected 4..8"),
+    ("gen --size 0-8 local:x", "--size: 0 bytes are too short for a number; expected 4..8"),
+    ("gen --size 9 local:x", '--size: expected a whole number 0..8, found "9"'),
+    ("gen --size 8-4 local:x", '--size: expected the shorter first, found "8-4"'),
+    ("gen --load 101% local:x", '--load: expected a whole number 1..100, found "101"'),
+    ("gen --load 0 local:x", '--load: expected a whole number 1..100, found "0"'),
+    ("gen --load 80% local:x", "--load: the bit rate of local:x is not known; expected --bitrate BPS"),
+    ("gen --load 80% --rate 5 local:x", "expected either --load or --rate, not both"),
+    ("gen --rate 0 local:x", '--rate: expected a whole number 1..1000000, found "0"'),
+    ("gen --id 128 local:x", '--id: expected a whole number 0..127, found "128"'),
+    ("gen --seed 4294967296 local:x", '--seed: expected a whole number 0..4294967295, found "4294967296"'),
+    ("gen --from all local:x", '--from: address "all": no dot; expected SUBNET.NODE, such as 0.2'),
+    ("gen --to 32.1 local:x", '--to: address "32.1": subnet 32 is out of range; expected 0..31'),
+    ("gen -T 5 local:x", "-T: expected with --check alone"),
+    ("gen -v local:x", "--verbose: expected with --check alone"),
+    ("gen --check --rate 5 local:x", "--rate: expected without --check, which takes what comes"),
+    ("gen --check --urgent local:x", "--urgent: expected without --check, which takes what comes"),
+    # attach
+    ("attach", "expected two buses; `roio-cli attach --help` shows how"),
+    ("attach local:x", "expected another BUS after the first; `roio-cli attach --help` shows how"),
+    ("attach local:x local:x", "local:x and local:x are one bus; expected two"),
+    ("attach local:x local:", 'bus "local:": a bus name of 0 bytes; expected 1..64, such as robot'),
+    ("attach local:x local:y local:z",
+     'expected no more words, found "local:z"; `roio-cli attach --help` shows how'),
     # help
     ("help snd",
-     'unknown command "snd": expected send, dump, buses, hub, bridge, kind, robot or help; `roio-cli --help` shows how'),
+     f'unknown command "snd": expected {COMMANDS}; `roio-cli --help` shows how'),
     ("help bridge shw",
      'unknown command "shw": expected show, set, identify or attach; `roio-cli bridge --help` shows '
      "how"),
@@ -312,10 +356,10 @@ class InformationTest(CliTest):
         self.assertRegex(out, r"^roio-cli \d+\.\d+\.\d+\n$")
 
     def test_help_goes_to_standard_output_and_has_examples(self):
-        for command in ([], ["send"], ["dump"], ["buses"], ["bridge"], ["bridge", "show"],
-                        ["bridge", "set"], ["bridge", "identify"], ["bridge", "attach"], ["kind"],
-                        ["kind", "header"], ["kind", "js"], ["kind", "md"], ["robot"], ["robot", "dbc"],
-                        ["robot", "check"]):
+        for command in ([], ["send"], ["ask"], ["dump"], ["top"], ["gen"], ["buses"], ["attach"],
+                        ["bridge"], ["bridge", "show"], ["bridge", "set"], ["bridge", "identify"],
+                        ["bridge", "attach"], ["kind"], ["kind", "header"], ["kind", "js"], ["kind", "md"],
+                        ["robot"], ["robot", "dbc"], ["robot", "check"]):
             for option in ("--help", "-h"):
                 status, out, err = self.run_cli(*command, option)
                 self.assertEqual((status, err), (0, ""))

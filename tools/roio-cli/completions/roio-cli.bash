@@ -23,6 +23,11 @@ _roio_cli_ports() {
   done
 }
 
+_roio_cli_all_buses() {
+  _roio_cli_buses
+  _roio_cli_ports | sed s/^/serial:/
+}
+
 # How many words, from the one given to the current one, are arguments, not options or their values.
 _roio_cli_arguments_before() {
   local index count=0
@@ -30,6 +35,7 @@ _roio_cli_arguments_before() {
     case ${COMP_WORDS[index]} in
       --from | --class | --count | --interval | --timeout | -n | -T | -t) ((++index)) ;;
       --bitrate | --mode | --address | --seconds | -o | --output) ((++index)) ;;
+      --load | --rate | --size | --to | --id | --seed | --time) ((++index)) ;;
       -?*) ;;
       *) ((++count)) ;;
     esac
@@ -40,7 +46,7 @@ _roio_cli_arguments_before() {
 _roio_cli_words() {
   local command=${COMP_WORDS[1]} previous=${COMP_WORDS[COMP_CWORD - 1]}
   if [ "$COMP_CWORD" -eq 1 ]; then
-    echo send dump buses hub bridge kind robot help --help --version
+    echo send ask dump top gen buses hub attach bridge kind robot help --help --version
     return
   fi
   case $previous in
@@ -48,24 +54,32 @@ _roio_cli_words() {
     --mode) echo normal listen loopback; return ;;
     --address) echo none; return ;;
     -t) echo a d z; return ;;
-    --from | --count | --interval | --timeout | -n | -T | --bitrate | --seconds) return ;;
+    --size) echo random; return ;;
+    --to) echo random; return ;;
+    --from) [ "$command" = gen ] && echo random; return ;;
+    --count | --interval | --timeout | -n | -T | --bitrate | --seconds) return ;;
+    --load | --rate | --id | --seed | --time) return ;;
   esac
   case $command:$current in
     send:-*) echo --from --urgent --class --count --interval --timeout --wait --dec --help; return ;;
+    ask:-*) echo --from --urgent --class --timeout --json --dec --help; return ;;
+    top:-*) echo --bitrate --interval -n --json --help; return ;;
+    gen:-*) echo --check --load --rate --bitrate --size --from --to --urgent --id --seed --count --time -T --timeout --verbose --help; return ;;
+    attach:-*) echo --verbose --help; return ;;
     dump:-*) echo -n -T -t --log --json --no-foreign --errors --verbose --help; return ;;
     buses:-*) echo --json --help; return ;;
     hub:-*) echo --bitrate --help; return ;;
-    send:* | dump:*) ;;
+    send:* | ask:* | dump:* | top:* | gen:*) ;;
+    attach:*) [ "$(_roio_cli_arguments_before 2)" -lt 2 ] && _roio_cli_all_buses; return ;;
     hub:*) _roio_cli_buses; return ;;
     bridge:*) _roio_cli_bridge_words; return ;;
     kind:*) _roio_cli_kind_words; return ;;
     robot:*) _roio_cli_robot_words; return ;;
-    help:*) [ "$COMP_CWORD" -eq 2 ] && echo send dump buses hub bridge kind robot; return ;;
+    help:*) [ "$COMP_CWORD" -eq 2 ] && echo send ask dump top gen buses hub attach bridge kind robot; return ;;
     *) return ;;
   esac
   if [ "$(_roio_cli_arguments_before 2)" -eq 0 ]; then
-    _roio_cli_buses
-    _roio_cli_ports | sed s/^/serial:/
+    _roio_cli_all_buses
   elif [ "$command" = dump ]; then
     echo to= from= urgent normal class=message class=system class=stream or
   fi

@@ -33,7 +33,7 @@ function __roio_cli_is_argument
             set skip 0
         else
             switch $word
-                case --from --class --count --interval --timeout -n -T -t --bitrate --mode --address --seconds -o --output
+                case --from --class --count --interval --timeout -n -T -t --bitrate --mode --address --seconds --load --rate --size --to --id --seed --time -o --output
                     set skip 1
                 case '-?*'
                 case '*'
@@ -65,6 +65,12 @@ function __roio_cli_robot
     test "$words[2]" = robot; and test "$words[3]" = "$argv[1]"
 end
 
+# Whether `attach` is the command itself, not bridge's.
+function __roio_cli_attach
+    set -l words (commandline -opc)
+    test "$words[2]" = attach
+end
+
 # Whether it is the N-th from 0 after the one given of bridge's commands.
 function __roio_cli_bridge_argument
     __roio_cli_bridge $argv[1]; and __roio_cli_is_argument $argv[2] 4
@@ -72,16 +78,20 @@ end
 
 complete -c roio-cli -f
 complete -c roio-cli -n __fish_use_subcommand -a send -d 'Send a message, or lines of them'
+complete -c roio-cli -n __fish_use_subcommand -a ask -d 'Send a message, and print the answer'
 complete -c roio-cli -n __fish_use_subcommand -a dump -d 'Show what is on a bus'
+complete -c roio-cli -n __fish_use_subcommand -a top -d 'Show who is on a bus, live'
+complete -c roio-cli -n __fish_use_subcommand -a gen -d 'Send numbered messages, or check them'
 complete -c roio-cli -n __fish_use_subcommand -a buses -d 'List the buses that can be opened'
 complete -c roio-cli -n __fish_use_subcommand -a hub -d 'Carry a local bus until a signal'
+complete -c roio-cli -n __fish_use_subcommand -a attach -d 'Make two buses one'
 complete -c roio-cli -n __fish_use_subcommand -a bridge -d 'Show, set and use a bridge on a serial port'
 complete -c roio-cli -n __fish_use_subcommand -a kind -d 'Make code and pages from messages'
 complete -c roio-cli -n __fish_use_subcommand -a robot -d 'Look at a robot file, and make a DBC'
 complete -c roio-cli -n __fish_use_subcommand -a help -d 'Print the help of a command'
 complete -c roio-cli -n __fish_use_subcommand -l version -d 'Print the version and end'
 complete -c roio-cli -s h -l help -d 'Print help and end'
-complete -c roio-cli -n '__fish_seen_subcommand_from send dump; and __roio_cli_needs_bus' -a '(__roio_cli_buses) serial:(__roio_cli_ports)'
+complete -c roio-cli -n '__fish_seen_subcommand_from send ask dump top gen; and __roio_cli_needs_bus' -a '(__roio_cli_buses) serial:(__roio_cli_ports)'
 
 complete -c roio-cli -n '__fish_seen_subcommand_from send' -l from -x -d 'Source address'
 complete -c roio-cli -n '__fish_seen_subcommand_from send' -l urgent -d 'Ahead of normal messages'
@@ -102,7 +112,38 @@ complete -c roio-cli -n '__fish_seen_subcommand_from dump' -l errors -d 'Show er
 complete -c roio-cli -n '__fish_seen_subcommand_from dump' -s v -l verbose -d 'Say when listening, and counts'
 complete -c roio-cli -n '__fish_seen_subcommand_from dump; and not __roio_cli_needs_bus' -a 'to= from= urgent normal class=message class=system class=stream or'
 
-complete -c roio-cli -n 'set -l words (commandline -opc); test (count $words) = 2; and test $words[2] = help' -a 'send dump buses hub bridge kind robot'
+complete -c roio-cli -n '__fish_seen_subcommand_from ask' -l from -x -d 'Own address, that answers go to'
+complete -c roio-cli -n '__fish_seen_subcommand_from ask' -l urgent -d 'Ahead of normal messages'
+complete -c roio-cli -n '__fish_seen_subcommand_from ask' -l class -x -a 'message system stream' -d 'Class of the message'
+complete -c roio-cli -n '__fish_seen_subcommand_from ask' -l timeout -x -d 'Longest wait for the answer, ms'
+complete -c roio-cli -n '__fish_seen_subcommand_from ask' -l json -d 'The answer as a JSON line'
+complete -c roio-cli -n '__fish_seen_subcommand_from ask' -l dec -d 'DATA are decimal numbers'
+
+complete -c roio-cli -n '__fish_seen_subcommand_from top' -l bitrate -x -d 'Of a bus that does not tell, bit/s'
+complete -c roio-cli -n '__fish_seen_subcommand_from top' -l interval -x -d 'Between two screens or sets of lines, ms'
+complete -c roio-cli -n '__fish_seen_subcommand_from top' -s n -x -d 'End after so many of them'
+complete -c roio-cli -n '__fish_seen_subcommand_from top' -l json -d 'JSON lines, also on a terminal'
+
+complete -c roio-cli -n '__fish_seen_subcommand_from gen' -l check -d 'Receive them, and say what became of them'
+complete -c roio-cli -n '__fish_seen_subcommand_from gen' -l load -x -d 'Share of the bus, percent'
+complete -c roio-cli -n '__fish_seen_subcommand_from gen' -l rate -x -d 'Messages a second'
+complete -c roio-cli -n '__fish_seen_subcommand_from gen' -l bitrate -x -d 'Of a bus that does not tell, bit/s'
+complete -c roio-cli -n '__fish_seen_subcommand_from gen' -l size -x -a 'random' -d 'Bytes, 4 to 8'
+complete -c roio-cli -n '__fish_seen_subcommand_from gen' -l from -x -a random -d 'Source'
+complete -c roio-cli -n '__fish_seen_subcommand_from gen' -l to -x -a random -d 'Destination'
+complete -c roio-cli -n '__fish_seen_subcommand_from gen' -l urgent -d 'Ahead of normal messages'
+complete -c roio-cli -n '__fish_seen_subcommand_from gen' -l id -x -d 'Of this generator, 0 to 127'
+complete -c roio-cli -n '__fish_seen_subcommand_from gen' -l seed -x -d 'Of what is random'
+complete -c roio-cli -n '__fish_seen_subcommand_from gen' -l count -x -d 'End after so many messages'
+complete -c roio-cli -n '__fish_seen_subcommand_from gen' -l time -x -d 'End after so long, ms'
+complete -c roio-cli -n '__fish_seen_subcommand_from gen' -s T -x -d 'Check: end after so long without one, ms'
+complete -c roio-cli -n '__fish_seen_subcommand_from gen' -l timeout -x -d 'Longest wait for the bus, ms'
+complete -c roio-cli -n '__fish_seen_subcommand_from gen' -s v -l verbose -d 'Check: say when listening'
+
+complete -c roio-cli -n '__roio_cli_attach' -s v -l verbose -d 'Say the counts once a second'
+complete -c roio-cli -n '__roio_cli_attach; and not __roio_cli_is_argument 2 3' -a '(__roio_cli_buses) serial:(__roio_cli_ports)'
+
+complete -c roio-cli -n 'set -l words (commandline -opc); test (count $words) = 2; and test $words[2] = help' -a 'send ask dump top gen buses hub attach bridge kind robot'
 
 complete -c roio-cli -n '__fish_seen_subcommand_from hub' -l bitrate -x -d 'Pace of the bus, bit/s'
 complete -c roio-cli -n '__fish_seen_subcommand_from hub; and __roio_cli_needs_bus' -a '(__roio_cli_buses)'

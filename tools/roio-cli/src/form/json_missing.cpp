@@ -2,6 +2,7 @@
 #include "form/json_lines.hpp"
 #include "form/record_format.hpp"
 #include "program/exit_status.hpp"
+#include "top/lines.hpp"
 
 namespace roio::cli {
 namespace {
@@ -29,6 +30,10 @@ void append_json(Buffer& /*out*/, const BridgeReport& /*report*/) {
 }
 
 void append_json(Buffer& /*out*/, const BusReport& /*report*/) {
+  refuse_json();
+}
+
+void append_json(Buffer& /*out*/, const Snapshot& /*snapshot*/, const Labels& /*labels*/) {
   refuse_json();
 }
 

@@ -5,12 +5,16 @@
 #include <string_view>
 #include <vector>
 
+#include "ask/words.hpp"
+#include "attach/words.hpp"
 #include "bridge/words.hpp"
 #include "buses/hub_words.hpp"
 #include "dump/words.hpp"
+#include "gen/words.hpp"
 #include "kind/words.hpp"
 #include "program/words.hpp"
 #include "send/words.hpp"
+#include "top/words.hpp"
 
 namespace roio::cli {
 namespace {
@@ -19,9 +23,12 @@ constexpr const char* main_examples = R"(Examples:
   roio-cli dump -n 1 local:robot &             one message, and end
   roio-cli send --wait local:robot 0.2 5A2D00  three bytes to node 2 of subnet 0
   roio-cli dump can0 to=0.2 urgent             urgent messages, on SocketCAN
+  roio-cli ask can0 0.2 01                     a question, and its answer
   roio-cli dump serial:auto                    a bridge on a serial port
+  roio-cli top can0                            who is there, live
+  roio-cli gen --load 80% can0                 traffic, to try a bus
   roio-cli buses                               what there is to be opened
-  roio-cli bridge attach /dev/ttyACM0 vcan0    a bridge, for every Linux program
+  roio-cli attach serial:/dev/ttyACM0 vcan0    two buses become one
   roio-cli robot check robot.json              what a robot has
 
 BUS is a CAN interface (can0), serial:DEVICE, a bridge on a serial port, or
@@ -43,7 +50,8 @@ constexpr const char* help_examples = R"(Examples:
   roio-cli help send
   roio-cli help bridge set)";
 
-constexpr const char* commands = "send, dump, buses, hub, bridge, kind, robot or help";
+constexpr const char* commands =
+    "send, ask, dump, top, gen, buses, hub, attach, bridge, kind, robot or help";
 
 /// The words with `help COMMAND` said as `COMMAND --help`.
 std::vector<const char*> with_help(int argc, const char* const* argv) {
@@ -82,16 +90,21 @@ const CLI::App& last_command(const CLI::App& app) {
 
 Command parse_command_line(int argc, const char* const* argv) {
   CLI::App app("Sends and shows Roio messages on a CAN bus, and looks after bridges.");
-  prepare(app, "send|dump|buses|hub|bridge|kind|robot [OPTIONS] ...", main_examples);
+  prepare(app, "send|ask|dump|top|gen|buses|hub|attach|bridge|kind|robot [OPTIONS] ...",
+          main_examples);
   bool version = false;
   app.add_flag("--version", version, "Print the version and end")->disable_flag_override();
   app.require_subcommand(0, 1);
   const SendWords send_words(app);
+  const AskWords ask_words(app);
   const DumpWords dump_words(app);
+  const TopWords top_words(app);
+  const GenWords gen_words(app);
   CLI::App& buses_app = *app.add_subcommand("buses", "List the buses that can be opened");
   prepare(buses_app, "buses [OPTIONS]", buses_examples);
   const CLI::Option* buses_json = flag(buses_app, "--json", "JSON lines");
   const HubWords hub_words(app);
+  const AttachWords attach_words(app);
   const BridgeWords bridge_words(app);
   const KindWords kind_words(app);
   const RobotWords robot_words(app);
@@ -121,8 +134,17 @@ Command parse_command_line(int argc, const char* const* argv) {
   if (send_words.parsed()) {
     return send_words.parse();
   }
+  if (ask_words.parsed()) {
+    return ask_words.parse();
+  }
   if (dump_words.parsed()) {
     return dump_words.parse();
+  }
+  if (top_words.parsed()) {
+    return top_words.parse();
+  }
+  if (gen_words.parsed()) {
+    return std::visit([](auto options) { return Command(std::move(options)); }, gen_words.parse());
   }
   if (buses_app.parsed()) {
     refuse_rest(buses_app, "buses");
@@ -130,6 +152,9 @@ Command parse_command_line(int argc, const char* const* argv) {
   }
   if (hub_words.parsed()) {
     return hub_words.parse();
+  }
+  if (attach_words.parsed()) {
+    return attach_words.parse();
   }
   if (bridge_words.parsed()) {
     return bridge_words.parse();

@@ -5,13 +5,17 @@
 #include <string>
 #include <variant>
 
+#include "ask/ask.hpp"
 #include "attach/attach.hpp"
 #include "bridge/bridge.hpp"
 #include "buses/buses.hpp"
 #include "buses/hub.hpp"
 #include "dump/dump.hpp"
+#include "gen/check.hpp"
+#include "gen/gen.hpp"
 #include "kind/commands.hpp"
 #include "send/send.hpp"
+#include "top/top.hpp"
 
 namespace roio::cli {
 
@@ -20,9 +24,10 @@ struct Information {
   std::string text;
 };
 
-using Command = std::variant<Information, SendOptions, DumpOptions, BusesOptions, HubOptions,
+using Command = std::variant<Information, SendOptions, AskOptions, DumpOptions, TopOptions,
+                             GenOptions, CheckOptions, BusesOptions, HubOptions, AttachOptions,
                              BridgeShowOptions, BridgeSetOptions, BridgeIdentifyOptions,
-                             BridgeAttachOptions, KindOptions, RobotDbcOptions, RobotCheckOptions>;
+                             KindOptions, RobotDbcOptions, RobotCheckOptions>;
 
 /// @throws UsageError: what was wrong with the words, and what was expected.
 Command parse_command_line(int argc, const char* const* argv);

@@ -45,6 +45,14 @@ extern "C" void on_signal(int number) {
   errno = saved_errno;
 }
 
+/// For poll(): rounded up, so that a wait does not spin at its end.
+int poll_ms(std::chrono::steady_clock::time_point until) {
+  const auto left =
+      std::chrono::ceil<std::chrono::milliseconds>(until - std::chrono::steady_clock::now());
+  constexpr std::int64_t longest = std::numeric_limits<int>::max();
+  return static_cast<int>(std::clamp<std::int64_t>(left.count(), 0, longest));
+}
+
 // Waits for a signal, for one of the descriptors (-1: none), or for the time to pass.
 enum class Woken { signal, readable, timeout };
 Woken wait_for(std::span<const int> descriptors, std::optional<std::chrono::nanoseconds> timeout) {
@@ -97,6 +105,22 @@ bool Interrupt::sleep_until(std::chrono::steady_clock::time_point until) {
       return false;
     }
   }
+}
+
+void Interrupt::also(int number) {
+  catch_interrupt(number, on_signal);
+}
+
+bool Interrupt::wait(std::span<pollfd> fds, std::chrono::steady_clock::time_point until) {
+  std::array<pollfd, max_fds + 1> all{};
+  const std::size_t count = std::min(fds.size(), max_fds);
+  std::copy_n(fds.begin(), count, all.begin());
+  all[count] = {wake_pipe[0], POLLIN, 0};
+  const int ready = ::poll(all.data(), count + 1, poll_ms(until));
+  for (std::size_t i = 0; i < count; ++i) {
+    fds[i].revents = ready > 0 ? all[i].revents : short{0};
+  }
+  return caught == 0;
 }
 
 bool Interrupt::wait_readable(int fd) {

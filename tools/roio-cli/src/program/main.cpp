@@ -22,17 +22,33 @@ int run(const SendOptions& options) {
   const Interrupt interrupt;
   return send(options);
 }
+int run(const AskOptions& options) {
+  const Interrupt interrupt;
+  return ask(options);
+}
 int run(const DumpOptions& options) {
   const Interrupt interrupt;
   return dump(options);
+}
+int run(const TopOptions& options) {
+  const Interrupt interrupt;
+  return top(options);
+}
+int run(const GenOptions& options) {
+  const Interrupt interrupt;
+  return gen(options);
+}
+int run(const CheckOptions& options) {
+  const Interrupt interrupt;
+  return check(options);
 }
 int run(const HubOptions& options) {
   const Interrupt interrupt;
   return hub(options);
 }
-int run(const BridgeAttachOptions& options) {
+int run(const AttachOptions& options) {
   const Interrupt interrupt;
-  return bridge_attach(options);
+  return attach(options);
 }
 // What is over in moments is just ended.
 int run(const BusesOptions& options) {

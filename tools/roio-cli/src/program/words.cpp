@@ -6,6 +6,8 @@
 #include <utility>
 #include <vector>
 
+#include "program/bitrate.hpp"
+
 namespace roio::cli {
 namespace {
 
@@ -67,6 +69,11 @@ std::chrono::milliseconds parse_ms(const std::string& option, const std::string&
                                    std::uint64_t smallest) {
   constexpr std::uint64_t longest_ms = 24ULL * 60 * 60 * 1000;
   return std::chrono::milliseconds(parse_number(option, text, smallest, longest_ms));
+}
+
+std::uint32_t parse_bitrate(const std::string& text) {
+  return static_cast<std::uint32_t>(
+      parse_number("--bitrate", text, slowest_bitrate_bps, fastest_bitrate_bps));
 }
 
 std::string parse_bus(const std::string& text) {

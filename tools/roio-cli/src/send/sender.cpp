@@ -5,10 +5,8 @@
 #include <roio/text.hpp>
 #include <system_error>
 
-#include "form/record_format.hpp"
 #include "program/exit_status.hpp"
 #include "program/interrupt.hpp"
-#include "program/output.hpp"
 #include "send/outcome.hpp"
 
 namespace roio::cli {
@@ -88,18 +86,7 @@ bool Sender::send(std::span<const Frame> frames) {
 }
 
 void Sender::close() {
-  wait_for_outcomes(bus_);
-  if (has_given_up(bus_)) {
-    throw Failure(why_not_sent(bus_, timeout_, sent_));
-  }
-  bus_.close();
-  if (const std::uint64_t unheard = bus_.statistics().unheard; unheard > 0) {
-    note(bus_.name() + ": nobody else was there to have " + count_of(unheard, "message"));
-  }
-  if (const std::uint64_t unsent = bus_.statistics().unsent; unsent > 0) {
-    throw Failure(bus_.name() + ": " + count_of(unsent, "message") +
-                  " not handed over before the bus closed");
-  }
+  finish_sending(bus_, timeout_, sent_);
 }
 
 }  // namespace roio::cli

@@ -5,12 +5,10 @@
 #include <roio/candump_log.hpp>
 #include <roio/message.hpp>
 #include <roio/text.hpp>
-#include <span>
 #include <utility>
 
-#include "names/named_data.hpp"
-#include "names/robot.hpp"
 #include "program/words.hpp"
+#include "send/message_words.hpp"
 
 namespace roio::cli {
 namespace {
@@ -31,53 +29,6 @@ Without DATA the message is empty. Lines read from standard input say themselves
 where they go. A line that cannot be understood is named on standard error, the
 others are sent, and the exit status is 1. Quote '0.*' for the shell, or write
 0.255. A local bus on which nobody listens is told on standard error.)";
-
-constexpr const char* empty_message = "; without DATA the message is empty";
-
-Bytes parse_decimal(std::span<const std::string> words) {
-  if (words.empty()) {
-    throw UsageError(std::string("--dec: expected 1 to 8 numbers 0..255 after DEST") +
-                     empty_message);
-  }
-  Bytes bytes;
-  if (words.size() > bytes.data.size()) {
-    throw UsageError("DATA: expected at most 8 bytes, found " + std::to_string(words.size()));
-  }
-  for (const std::string& word : words) {
-    bytes.data[bytes.length++] =
-        static_cast<std::uint8_t>(parse_number("DATA with --dec", word, 0, 255));
-  }
-  return bytes;
-}
-
-// In one word, or in several, as dump prints them.
-Bytes parse_hexadecimal(std::span<const std::string> words) {
-  std::string text;
-  for (const std::string& word : words) {
-    if (word.empty()) {
-      throw UsageError(std::string("DATA: expected hexadecimal digits such as 5A2D00, found \"\"") +
-                       empty_message);
-    }
-    text += (text.empty() ? "" : " ") + word;
-  }
-  return value_or_refuse(parse_hex(text));
-}
-
-MessageClass parse_sendable_class(const std::string& text) {
-  const auto message_class = parse_class(text);
-  if (!message_class || *message_class == MessageClass::reserved) {
-    throw UsageError("--class: expected message, system or stream, found " + quote(text));
-  }
-  return *message_class;
-}
-
-bool is_frame(const std::string& destination) {
-  return destination.find('#') != std::string::npos;
-}
-
-bool is_destination(const Robot* robot, const std::string& word) {
-  return word == "-" || is_frame(word) || address_of(robot, word);
-}
 
 }  // namespace
 
@@ -103,22 +54,6 @@ SendWords::SendWords(CLI::App& program)
   wait_ = app_->add_flag("--wait{10000}", wait_text_, "Wait until somebody listens on a local bus");
 }
 
-// BUS may be left out where the robot names one: then the first word says where to.
-SendWords::Said SendWords::said(const Robot* robot) const {
-  const bool may_be_left_out = robot != nullptr && !robot->bus.empty() && !bus_.empty();
-  if (!may_be_left_out || !is_destination(robot, bus_)) {
-    if (may_be_left_out && !is_destination(robot, destination_)) {
-      static_cast<void>(parse_destination(robot, bus_));  // neither is: the first is misspelt
-    }
-    return {bus_, destination_, data_};
-  }
-  Said said{bus_of(*robot), bus_, data_};
-  if (!destination_.empty()) {
-    said.data.insert(said.data.begin(), destination_);
-  }
-  return said;
-}
-
 SendOptions SendWords::parse_options(const Robot* robot) const {
   constexpr std::uint64_t most = std::numeric_limits<std::uint32_t>::max();
   SendOptions options;
@@ -140,7 +75,7 @@ SendOptions SendWords::parse() const {
   // First the options: in `send --count local:robot 0.2`, what is wrong is not that BUS is missing.
   auto robot = robot_.find();
   SendOptions options = parse_options(robot.get());
-  const Said words = said(robot.get());
+  const MessageWords words = sort_words(robot.get(), {bus_, destination_, data_});
   options.robot = std::move(robot);
   if (words.bus.empty()) {
     refuse("send", "expected BUS, DEST and DATA");
@@ -165,7 +100,7 @@ SendOptions SendWords::parse() const {
 }
 
 // Which options make no sense with what says everything itself.
-void SendWords::refuse_with(const Said& said, const char* what, const char* who,
+void SendWords::refuse_with(const MessageWords& said, const char* what, const char* who,
                             bool count_too) const {
   std::vector<const CLI::Option*> options{dec_, urgent_, message_class_};
   options.push_back(count_too ? count_ : from_);
@@ -181,7 +116,7 @@ void SendWords::refuse_with(const Said& said, const char* what, const char* who,
   }
 }
 
-Frame SendWords::parse_frame(const Said& said) const {
+Frame SendWords::parse_frame(const MessageWords& said) const {
   const Frame frame = value_or_refuse(parse_frame_text(said.destination));
   if (frame.kind == FrameKind::error) {
     throw UsageError("frame " + quote(said.destination) +
@@ -191,26 +126,13 @@ Frame SendWords::parse_frame(const Said& said) const {
   return frame;
 }
 
-// By name, where the robot has one; else as bytes.
-Bytes SendWords::parse_data(const Said& said, const SendOptions& options,
-                            Address destination) const {
-  if (dec_->count() > 0) {
-    return parse_decimal(said.data);
-  }
-  const bool may_have_names = options.robot && message_class_->count() == 0;
-  const auto named = may_have_names ? value_or_refuse(parse_named_data(
-                                          *options.robot, options.source, destination, said.data))
-                                    : std::nullopt;
-  return named ? *named : parse_hexadecimal(said.data);
-}
-
-Frame SendWords::parse_message(const Said& said, const SendOptions& options) const {
+Frame SendWords::parse_message(const MessageWords& said, const SendOptions& options) const {
   Message message{};
   message.header.destination = parse_destination(options.robot.get(), said.destination);
   message.header.source = options.source;
   message.header.priority = urgent_->count() > 0 ? Priority::urgent : Priority::normal;
   message.header.message_class = parse_sendable_class(class_text_);
-  const Bytes bytes = parse_data(said, options, message.header.destination);
+  const Bytes bytes = parse_data(options.robot.get(), message.header, said.data, dec_->count() > 0);
   message.length = bytes.length;
   std::copy(bytes.data.begin(), bytes.data.end(), message.data);
   Frame frame{};

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "names/option.hpp"
+#include "send/message_words.hpp"
 #include "send/send.hpp"
 
 namespace roio::cli {
@@ -24,18 +25,11 @@ class SendWords {
   [[nodiscard]] SendOptions parse() const;
 
  private:
-  /// The words that are no options.
-  struct Said {
-    std::string bus, destination;
-    std::vector<std::string> data;
-  };
-  [[nodiscard]] Said said(const Robot* robot) const;
   [[nodiscard]] SendOptions parse_options(const Robot* robot) const;
-  [[nodiscard]] Frame parse_message(const Said& said, const SendOptions& options) const;
-  [[nodiscard]] Bytes parse_data(const Said& said, const SendOptions& options,
-                                 Address destination) const;
-  [[nodiscard]] Frame parse_frame(const Said& said) const;
-  void refuse_with(const Said& said, const char* what, const char* who, bool count_too) const;
+  [[nodiscard]] Frame parse_message(const MessageWords& said, const SendOptions& options) const;
+  [[nodiscard]] Frame parse_frame(const MessageWords& said) const;
+  void refuse_with(const MessageWords& said, const char* what, const char* who,
+                   bool count_too) const;
 
   std::string bus_, destination_, from_text_;
   std::string class_text_ = "message";
