@@ -142,9 +142,11 @@ class Builder final : public nlohmann::json_sax<nlohmann::json> {
   [[nodiscard]] std::string place() const {
     std::string out;
     for (std::size_t i = 1; i < open_.size(); ++i) {
-      out = open_[i - 1]->type == Value::Type::object
-                ? place_in(out, open_[i]->name)
-                : out + '[' + std::to_string(open_[i - 1]->children.size() - 1) + ']';
+      if (open_[i - 1]->type == Value::Type::object) {
+        out = place_in(out, open_[i]->name);
+      } else {
+        out += '[' + std::to_string(open_[i - 1]->children.size() - 1) + ']';
+      }
     }
     return out;
   }
