@@ -21,7 +21,7 @@ class RobotRefusal : public test::RobotFolder {};
 
 TEST(KindRefusal, Table) {
   for (const BrokenFile& row : broken_files("kind.txt")) {
-    EXPECT_EQ(verdict(parse_kind(row.text, "k.kind.json")), row.error) << row.why;
+    EXPECT_EQ(verdict(parse_kind(row.text, "servo-arm.kind.json")), row.error) << row.why;
   }
 }
 

@@ -2,16 +2,19 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
+#include <fstream>
+#include <iterator>
 #include <roio/robot.hpp>
 
+#include "folder.hpp"
 #include "parsing.hpp"
+#include "robot/robot_reader.hpp"
 
 namespace roio {
 namespace {
 
+using test::source_dir;
 using test::verdict;
-
-const std::filesystem::path source_dir = ROIO_SOURCE_DIR;
 
 std::string hex(const Parsed<Message>& message) {
   return message ? to_hex(message->data, message->length) : message.error().message;
@@ -44,6 +47,20 @@ TEST(Shipped, KindsAreRead) {
     ++count;
   }
   EXPECT_EQ(count, 4);
+}
+
+/// What docs/robot-file.md shows, the second time with the kinds beside it that it names.
+TEST(Shipped, TheDocumentsExamples) {
+  std::ifstream file(source_dir / "docs" / "robot-file.md");
+  const std::string text((std::istreambuf_iterator<char>(file)), {});
+  std::vector<std::string> blocks;
+  for (std::size_t at = 0; (at = text.find("\n```json\n", at)) != std::string::npos;) {
+    at += 9;
+    blocks.push_back(text.substr(at, text.find("\n```", at) - at));
+  }
+  ASSERT_EQ(blocks.size(), 2U);
+  EXPECT_EQ(verdict(parse_kind(blocks[0], "document")), "ok");
+  EXPECT_EQ(verdict(robot_file::parse_robot(blocks[1], source_dir / "robot.json", {})), "ok");
 }
 
 TEST(Shipped, ArmRobot) {

@@ -1,4 +1,4 @@
-#include <roio/robot.hpp>
+#include "robot/robot_reader.hpp"
 
 #include "robot/alike.hpp"
 #include "robot/at.hpp"
@@ -160,6 +160,17 @@ class RobotReader {
 };
 
 }  // namespace
+
+Parsed<Robot> parse_robot(std::string_view text, const std::filesystem::path& file,
+                          const LoadOptions& options) {
+  const std::string origin = file.string();
+  try {
+    return RobotReader(file, options).read(Source(text, origin));
+  } catch (const Refused& refused) {
+    return refused.error();
+  }
+}
+
 }  // namespace robot_file
 
 Parsed<Robot> load_robot(const std::filesystem::path& file, const LoadOptions& options) {
@@ -167,12 +178,7 @@ Parsed<Robot> load_robot(const std::filesystem::path& file, const LoadOptions& o
   if (!text) {
     return text.error();
   }
-  const std::string origin = file.string();
-  try {
-    return robot_file::RobotReader(file, options).read(robot_file::Source(*text, origin));
-  } catch (const robot_file::Refused& refused) {
-    return refused.error();
-  }
+  return robot_file::parse_robot(*text, file, options);
 }
 
 }  // namespace roio
