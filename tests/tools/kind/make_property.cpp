@@ -233,18 +233,19 @@ class Property {
                              direction);
       calls_ += fmt::format("  {}();\n", function);
       checks_ += check_facts(names);
+      const Json which{{"kind", name}, {"direction", direction}, {"message", message.name}};
       for (int i = 0; i < vectors_a_message; ++i) {
-        add_vector(names, {{"kind", name}, {"direction", direction}, {"message", message.name}});
+        add_vector(kind, names, which);
       }
       for (int i = 0; i < frames_a_message; ++i) {
-        add_frame(kind, names,
-                  {{"kind", name}, {"direction", direction}, {"message", message.name}});
+        add_frame(kind, names, which, random_bytes(random_, message));
       }
       checks_ += "}\n";
     }
   }
 
-  void add_vector(const MessageNames& names, Json line) {
+  void add_vector(const Kind& kind, const MessageNames& names, const Json& message) {
+    Json line = message;
     const Vector vector = random_vector(random_, *names.message);
     Json values = Json::object();
     for (const NamedValue& value : vector.values) {
@@ -254,13 +255,12 @@ class Property {
     line["packed"] = vector.packed ? hex(*vector.packed) : Json(nullptr);
     lines_ << line << '\n';
     if (vector.packed) {
-      checks_ += check_pack(names, *vector.packed) + check_unpack(names, *vector.packed) +
-                 check_refusal(names, *vector.packed);
+      checks_ += check_pack(names, *vector.packed) + check_refusal(names, *vector.packed);
+      add_frame(kind, names, message, *vector.packed);
     }
   }
 
-  void add_frame(const Kind& kind, const MessageNames& names, Json line) {
-    const Bytes bytes = random_bytes(random_, *names.message);
+  void add_frame(const Kind& kind, const MessageNames& names, Json line, const Bytes& bytes) {
     checks_ += check_unpack(names, bytes);
     line["bytes"] = hex(bytes);
     line["unpacked"] = nullptr;

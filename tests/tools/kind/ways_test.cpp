@@ -119,6 +119,15 @@ TEST(Ways, ToEverybodyWhereAllThatKnowItAgree) {
   EXPECT_EQ(text_of(robot), (Names{"pc>a x only-a", "pc>b y", "pc>0.* only-a"}));
 }
 
+TEST(Ways, ToEverybodyWhatTwoKindsHaveAlikeOnce) {
+  const Robot robot = RobotOf()
+                          .with("pc", {0, 10})
+                          .with("a", {0, 1}, kind({message("stop", 2)}, {}))
+                          .with("b", {0, 2}, kind({message("stop", 2), message("b", 5)}, {}))
+                          .robot;
+  EXPECT_EQ(text_of(robot), (Names{"pc>a stop", "pc>b stop b", "pc>0.* stop b"}));
+}
+
 TEST(Ways, NobodyToTalkTo) {
   EXPECT_EQ(text_of(RobotOf().with("pc", {0, 10}).with("panel", {0, 11}).robot), Names{});
   EXPECT_EQ(text_of(Robot{}), Names{});

@@ -20,11 +20,12 @@ std::string comment(std::string_view mark, const std::string& text) {
   return line.empty() ? "" : fmt::format("{} {}{}\n", mark, line, line.ends_with('\\') ? " ." : "");
 }
 
-/// "deg, 0 to 180", with the step where it is not 1.
+/// "0 to 180 deg"; where one on the wire is not one of the unit, "0 to 200, each 1/2 deg".
 std::string what_it_holds(const Field& field) {
   std::string text = range_of(field);
   if (field.scale.numerator != field.scale.denominator) {
-    text += fmt::format(", in steps of {}", to_string(field.scale));
+    text = fmt::format("{} to {}, each {}{}{}", field.minimum, field.maximum, to_string(field.scale),
+                       field.unit.empty() ? "" : " ", field.unit);
   }
   return field.description.empty() ? text : text + ": " + field.description;
 }

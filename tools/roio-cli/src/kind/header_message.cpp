@@ -251,7 +251,9 @@ std::string filled(const std::vector<std::string>& parts, const std::string& sep
   for (const std::string& part : parts) {
     if (!text.empty()) {
       const bool fits = column + separator.size() + part.size() < longest_line;
-      text += separator + (fits ? " " : "\n" + indent);
+      text += separator;
+      text += fits ? " " : "\n";
+      text += fits ? "" : indent;
       column = fits ? column + separator.size() + 1 : indent.size();
     }
     text += part;
