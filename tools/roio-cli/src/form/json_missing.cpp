@@ -14,8 +14,8 @@ constexpr const char* no_json = "this roio-cli was built without JSON (ROIO_BUIL
 
 }  // namespace
 
-Parsed<std::optional<Frame>> parse_json_line(std::string_view /*line*/,
-                                             Address /*default_source*/) {
+Parsed<std::optional<JsonFrame>> parse_json_line(std::string_view /*line*/,
+                                                 Address /*default_source*/) {
   return ParseError{no_json, 0};
 }
 

@@ -9,6 +9,8 @@
 #include "buses/hub_words.hpp"
 #include "dump/words.hpp"
 #include "program/words.hpp"
+#include "record/play_words.hpp"
+#include "record/record_words.hpp"
 #include "send/words.hpp"
 
 namespace roio::cli {
@@ -19,6 +21,8 @@ constexpr const char* main_examples = R"(Examples:
   roio-cli send --wait local:robot 0.2 5A2D00  three bytes to node 2 of subnet 0
   roio-cli dump can0 to=0.2 urgent             urgent messages, on SocketCAN
   roio-cli dump serial:auto                    a bridge on a serial port
+  roio-cli record -o drive.log can0            until Ctrl-C; and back again:
+  roio-cli play drive.log can0
   roio-cli buses                               what there is to be opened
   roio-cli bridge attach /dev/ttyACM0 vcan0    a bridge, for every Linux program
 
@@ -41,7 +45,7 @@ constexpr const char* help_examples = R"(Examples:
   roio-cli help send
   roio-cli help bridge set)";
 
-constexpr const char* commands = "send, dump, buses, hub, bridge or help";
+constexpr const char* commands = "send, dump, record, play, buses, hub, bridge or help";
 
 /// The words with `help COMMAND` said as `COMMAND --help`.
 std::vector<const char*> with_help(int argc, const char* const* argv) {
@@ -80,12 +84,14 @@ const CLI::App& last_command(const CLI::App& app) {
 
 Command parse_command_line(int argc, const char* const* argv) {
   CLI::App app("Sends and shows Roio messages on a CAN bus, and looks after bridges.");
-  prepare(app, "send|dump|buses|hub|bridge [OPTIONS] ...", main_examples);
+  prepare(app, "send|dump|record|play|buses|hub|bridge [OPTIONS] ...", main_examples);
   bool version = false;
   app.add_flag("--version", version, "Print the version and end")->disable_flag_override();
   app.require_subcommand(0, 1);
   const SendWords send_words(app);
   const DumpWords dump_words(app);
+  const RecordWords record_words(app);
+  const PlayWords play_words(app);
   CLI::App& buses_app = *app.add_subcommand("buses", "List the buses that can be opened");
   prepare(buses_app, "buses [OPTIONS]", buses_examples);
   const CLI::Option* buses_json = flag(buses_app, "--json", "JSON lines");
@@ -117,6 +123,12 @@ Command parse_command_line(int argc, const char* const* argv) {
   }
   if (dump_words.parsed()) {
     return dump_words.parse();
+  }
+  if (record_words.parsed()) {
+    return record_words.parse();
+  }
+  if (play_words.parsed()) {
+    return play_words.parse();
   }
   if (buses_app.parsed()) {
     refuse_rest(buses_app, "buses");

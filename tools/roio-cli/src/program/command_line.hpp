@@ -10,6 +10,8 @@
 #include "buses/buses.hpp"
 #include "buses/hub.hpp"
 #include "dump/dump.hpp"
+#include "record/play.hpp"
+#include "record/record.hpp"
 #include "send/send.hpp"
 
 namespace roio::cli {
@@ -19,9 +21,9 @@ struct Information {
   std::string text;
 };
 
-using Command =
-    std::variant<Information, SendOptions, DumpOptions, BusesOptions, HubOptions, BridgeShowOptions,
-                 BridgeSetOptions, BridgeIdentifyOptions, BridgeAttachOptions>;
+using Command = std::variant<Information, SendOptions, DumpOptions, RecordOptions, PlayOptions,
+                             BusesOptions, HubOptions, BridgeShowOptions, BridgeSetOptions,
+                             BridgeIdentifyOptions, BridgeAttachOptions>;
 
 /// @throws UsageError: what was wrong with the words, and what was expected.
 Command parse_command_line(int argc, const char* const* argv);

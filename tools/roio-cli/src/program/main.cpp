@@ -26,6 +26,14 @@ int run(const DumpOptions& options) {
   const Interrupt interrupt;
   return dump(options);
 }
+int run(const RecordOptions& options) {
+  const Interrupt interrupt;
+  return record(options);
+}
+int run(const PlayOptions& options) {
+  const Interrupt interrupt;
+  return play(options);
+}
 int run(const HubOptions& options) {
   const Interrupt interrupt;
   return hub(options);
