@@ -16,9 +16,9 @@ WORDS = ("expected to=SUBNET.NODE, from=SUBNET.NODE, urgent, normal, class=messa
 
 # command line, the line on standard error
 WRONG = [
-    ("", "expected a command: send, dump, buses, hub, bridge or help; `roio-cli --help` shows how"),
+    ("", "expected a command: send, dump, record, play, buses, hub, bridge or help; `roio-cli --help` shows how"),
     ("snd local:x",
-     'unknown command "snd": expected send, dump, buses, hub, bridge or help; `roio-cli --help` shows how'),
+     'unknown command "snd": expected send, dump, record, play, buses, hub, bridge or help; `roio-cli --help` shows how'),
     ("--foo", 'unknown option "--foo"; `roio-cli --help` shows how'),
     # send: what is missing
     ("send", "expected BUS, DEST and DATA" + SEND_HELP),
@@ -155,9 +155,38 @@ WRONG = [
     ("dump local:x or", 'bad filter "or": expected a filter on either side of it'),
     ("dump local:x urgent 1:C00007FF",
      'no frame can satisfy these filters together; put "or" between choices'),
+    # record
+    ("record", "expected BUS; `roio-cli record --help` shows how"),
+    ("record -o local:x", "expected BUS; `roio-cli record --help` shows how"),
+    ("record -o - local:x",
+     '-o: expected the name of a file, found "-"; `roio-cli dump --log` writes to standard output'),
+    ("record --json local:x", 'unknown option "--json"; `roio-cli record --help` shows how'),
+    ("record --csv --pcap local:x", "expected either --csv or --pcap, not both"),
+    ("record -o a.pcap local:x local:y",
+     "--pcap: expected one BUS, as its form has no place for a bus's name"),
+    ("record -n 0 local:x", '-n: expected a whole number 1..4294967295, found "0"'),
+    ("record local:x urgnet", 'bad filter "urgnet": ' + WORDS),
+    # play
+    ("play", "expected FILE and BUS; `roio-cli play --help` shows how"),
+    ("play a.log", "expected BUS after FILE, or BUS=NAME for an interface of the log; "
+                   "`roio-cli play --help` shows how"),
+    ("play --speed fast a.log local:x", '--speed: expected a number 0.001..1000 or max, found "fast"'),
+    ("play --speed 0 a.log local:x", '--speed: expected a number 0.001..1000 or max, found "0"'),
+    ("play --speed nan a.log local:x", '--speed: expected a number 0.001..1000 or max, found "nan"'),
+    ("play --speed 1e2 a.log local:x", '--speed: expected a number 0.001..1000 or max, found "1e2"'),
+    ("play --gap -1 a.log local:x", '--gap: expected a whole number 0..86400000, found "-1"'),
+    ("play --loop=x a.log local:x", '--loop: expected a whole number 0..4294967295, found "x"'),
+    ("play --from soon a.log local:x",
+     "--from: expected a time as the log has it, such as 1436509052.25, or +12.5 since its first frame, "
+     'found "soon"'),
+    ("play --loop - local:x", "--loop: expected a file, which can be read again, not standard input"),
+    ("play a.log local:x local:y",
+     'BUS "local:y": expected one BUS, or BUS=NAME for each interface of the log'),
+    ("play --wait a.log can0=can1",
+     "--wait: expected with local:NAME alone; on can0 nobody can tell who listens"),
     # help
     ("help snd",
-     'unknown command "snd": expected send, dump, buses, hub, bridge or help; `roio-cli --help` shows how'),
+     'unknown command "snd": expected send, dump, record, play, buses, hub, bridge or help; `roio-cli --help` shows how'),
     ("help bridge shw",
      'unknown command "shw": expected show, set, identify or attach; `roio-cli bridge --help` shows '
      "how"),
@@ -289,7 +318,7 @@ class InformationTest(CliTest):
         self.assertRegex(out, r"^roio-cli \d+\.\d+\.\d+\n$")
 
     def test_help_goes_to_standard_output_and_has_examples(self):
-        for command in ([], ["send"], ["dump"], ["buses"], ["bridge"], ["bridge", "show"],
+        for command in ([], ["send"], ["dump"], ["record"], ["play"], ["buses"], ["bridge"], ["bridge", "show"],
                         ["bridge", "set"], ["bridge", "identify"], ["bridge", "attach"]):
             for option in ("--help", "-h"):
                 status, out, err = self.run_cli(*command, option)
@@ -300,7 +329,7 @@ class InformationTest(CliTest):
 
 
     def test_help_is_a_command_too(self):
-        for command in ([], ["send"], ["dump"], ["buses"], ["bridge"], ["bridge", "set"]):
+        for command in ([], ["send"], ["dump"], ["record"], ["play"], ["buses"], ["bridge"], ["bridge", "set"]):
             self.assertEqual(self.run_cli("help", *command), self.run_cli(*command, "--help"))
 
 

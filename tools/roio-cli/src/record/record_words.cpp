@@ -8,7 +8,7 @@ namespace {
 constexpr const char* examples =
     R"(It ends by Ctrl-C, after -n N frames, or after -T MS without one. FILE is a log
 as candump -l writes it; with a name that ends with .csv or .pcap, or with --csv
-or --pcap, one of those. A FILE that is there is not overwritten without --force.
+or --pcap, one of those. A FILE that is there is kept, unless --force is given.
 BUS and FILTER are those of dump: roio-cli help dump.
 
 Examples:
