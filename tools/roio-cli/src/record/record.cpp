@@ -98,14 +98,6 @@ class Recorder final : public Hearer {
   Clock::time_point last_written_;
 };
 
-std::string names_of(const std::vector<Origin>& origins) {
-  std::string names;
-  for (const Origin& origin : origins) {
-    names += (names.empty() ? "" : ", ") + origin.bus;
-  }
-  return names;
-}
-
 std::string counts_text(std::uint64_t frames, std::uint64_t lost, std::uint64_t fd_frames) {
   return count_of(frames, "frame") + " recorded, " + std::to_string(lost) + " lost" +
          (fd_frames > 0 ? ", " + count_of(fd_frames, "CAN FD frame") + " left out" : "");
