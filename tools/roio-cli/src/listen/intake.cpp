@@ -65,7 +65,8 @@ void Intake::refill() {
   }
 }
 
-// Ends where another bus may still have what is earlier.
+// Ends where another bus may still have what is earlier: where its batch is at its end, it is asked
+// again first.
 void Intake::merge(std::size_t most) {
   const bool behind = is_behind();
   const auto now = Clock::now();
@@ -76,7 +77,7 @@ void Intake::merge(std::size_t most) {
     }
     Waiting& waiting = waiting_[*from];
     heard_.push_back({*from, &waiting.batch[waiting.next++]});
-    if (waiting.is_empty() && waiting.may_have_more) {
+    if (waiting.is_empty()) {
       return;
     }
   }
