@@ -16,7 +16,7 @@ def read(*path):
         return file.read()
 
 
-COMMANDS = ["send", "dump", "buses", "hub", "bridge show", "bridge set", "bridge identify", "bridge attach"]
+COMMANDS = ["send", "dump", "record", "play", "buses", "hub", "bridge show", "bridge set", "bridge identify", "bridge attach"]
 
 
 class SyncTest(CliTest):
@@ -71,7 +71,7 @@ class SyncTest(CliTest):
 class ManualTest(CliTest):
     def test_pages_are_clean(self):
         pages = sorted(glob.glob(os.path.join(TOOL, "man", "*.1")))
-        self.assertEqual(len(pages), 6)
+        self.assertEqual(len(pages), 8)
         done = subprocess.run(
             ["mandoc", "-Tlint", "-Wwarning", *pages], capture_output=True, text=True, timeout=GUARD
         )
@@ -90,7 +90,7 @@ class CompletionTest(CliTest):
 
     # command line, what is offered: bash replaces what follows the last ':' or '='
     LINES = [
-        ("roio-cli ", ["--help", "--version", "bridge", "buses", "dump", "help", "hub", "send"]),
+        ("roio-cli ", ["--help", "--version", "bridge", "buses", "dump", "help", "hub", "play", "record", "send"]),
         ("roio-cli d", ["dump"]),
         ("roio-cli send --cl", ["--class"]),
         ("roio-cli send --wait lo", ["local:robot"]),
@@ -98,13 +98,19 @@ class CompletionTest(CliTest):
         ("roio-cli hub ", ["local:robot"]),
         ("roio-cli hub --bit", ["--bitrate"]),
         ("roio-cli send --class s", ["stream", "system"]),
-        ("roio-cli dump -t ", ["a", "d", "z"]),
+        ("roio-cli dump -t ", ["A", "a", "d", "z"]),
         ("roio-cli dump -n 5 lo", ["local:robot"]),
         ("roio-cli dump local:r", ["local:robot"]),
         ("roio-cli send local:robot ", []),
         ("roio-cli dump local:robot u", ["urgent"]),
         ("roio-cli dump local:robot urgent class=s", ["class=stream", "class=system"]),
         ("roio-cli dump serial:a", ["serial:auto"]),
+        ("roio-cli dump -b lo", ["local:robot"]),
+        ("roio-cli record -o x.log lo", ["local:robot"]),
+        ("roio-cli record local:robot u", ["urgent"]),
+        ("roio-cli record --f", ["--force"]),
+        ("roio-cli play --speed ", ["max"]),
+        ("roio-cli play x.log lo", ["local:robot"]),
         ("roio-cli buses --j", ["--json"]),
         ("roio-cli bridge s", ["set", "show"]),
         ("roio-cli bridge show a", ["auto"]),

@@ -23,12 +23,18 @@ _roio_cli_ports() {
   done
 }
 
+_roio_cli_all_buses() {
+  _roio_cli_buses
+  _roio_cli_ports | sed s/^/serial:/
+}
+
 # How many words, from the one given to the current one, are arguments, not options or their values.
 _roio_cli_arguments_before() {
   local index count=0
   for ((index = $1; index < COMP_CWORD; ++index)); do
     case ${COMP_WORDS[index]} in
-      --from | --class | --count | --interval | --timeout | -n | -T | -t) ((++index)) ;;
+      --from | --class | --count | --interval | --timeout | -n | -T | -t | -b) ((++index)) ;;
+      -o | --speed | --gap | --to) ((++index)) ;;
       --bitrate | --mode | --address | --seconds) ((++index)) ;;
       -?*) ;;
       *) ((++count)) ;;
@@ -40,32 +46,46 @@ _roio_cli_arguments_before() {
 _roio_cli_words() {
   local command=${COMP_WORDS[1]} previous=${COMP_WORDS[COMP_CWORD - 1]}
   if [ "$COMP_CWORD" -eq 1 ]; then
-    echo send dump buses hub bridge help --help --version
+    echo send dump record play buses hub bridge help --help --version
     return
   fi
   case $previous in
     --class) echo message system stream; return ;;
     --mode) echo normal listen loopback; return ;;
     --address) echo none; return ;;
-    -t) echo a d z; return ;;
-    --from | --count | --interval | --timeout | -n | -T | --bitrate | --seconds) return ;;
+    -t) echo a A d z; return ;;
+    -b) _roio_cli_all_buses; return ;;
+    -o) compgen -f -- "$current"; return ;;
+    --speed) echo max; return ;;
+    --from | --to | --count | --interval | --timeout | --gap | -n | -T | --bitrate | --seconds) return ;;
   esac
   case $command:$current in
     send:-*) echo --from --urgent --class --count --interval --timeout --wait --dec --help; return ;;
-    dump:-*) echo -n -T -t --log --json --no-foreign --errors --verbose --help; return ;;
+    dump:-*) echo -n -T -t -b -c --log --json --csv --pcap --no-foreign --errors --verbose --help; return ;;
+    record:-*) echo -o --force --csv --pcap -n -T --no-foreign --errors -b --help; return ;;
+    play:-*) echo --speed --gap --from --to --loop --timeout --wait --help; return ;;
     buses:-*) echo --json --help; return ;;
     hub:-*) echo --bitrate --help; return ;;
-    send:* | dump:*) ;;
+    send:* | dump:* | record:*) ;;
+    play:*) _roio_cli_play_words; return ;;
     hub:*) _roio_cli_buses; return ;;
     bridge:*) _roio_cli_bridge_words; return ;;
-    help:*) [ "$COMP_CWORD" -eq 2 ] && echo send dump buses hub bridge; return ;;
+    help:*) [ "$COMP_CWORD" -eq 2 ] && echo send dump record play buses hub bridge; return ;;
     *) return ;;
   esac
   if [ "$(_roio_cli_arguments_before 2)" -eq 0 ]; then
-    _roio_cli_buses
-    _roio_cli_ports | sed s/^/serial:/
-  elif [ "$command" = dump ]; then
+    _roio_cli_all_buses
+  elif [ "$command" != send ]; then
     echo to= from= urgent normal class=message class=system class=stream or
+  fi
+}
+
+# The log, and then where it goes.
+_roio_cli_play_words() {
+  if [ "$(_roio_cli_arguments_before 2)" -eq 0 ]; then
+    compgen -f -- "$current"
+  else
+    _roio_cli_all_buses
   fi
 }
 
