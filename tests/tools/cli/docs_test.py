@@ -3,7 +3,7 @@
 
 A block is one bash session: "$ " begins a command, "> " goes on with it, the rest is output. Commands
 that end with "&" run until they end by themselves; what they print stands at the block's end, in their
-order. A dump in the background that `send --wait` follows is run as it stands; for others the script waits, in
+order. One in the background that `send --wait` or `play --wait` follows is run as it stands; for others the script waits, in
 place of "sleep". A block after <!-- file NAME --> is a file that the blocks after it find. Blocks that name vcan0, themselves or in a
 file that they name, need real SocketCAN and are run with ROIO_CLI_ON_SOCKETCAN, the others
 without. For blocks that name /dev/ttyACM0 there is a bridge on a simulated board, if there is ROIO_SIM;
@@ -92,7 +92,7 @@ def session(commands):
         elif command.endswith("&"):
             background += 1
             # Output that the command sends elsewhere stays there.
-            if "send --wait" in follower:
+            if "send --wait" in follower or "play --wait" in follower:
                 script.append(f'({command[:-1]}) >"$OUT.{background}" 2>&1 &')
                 continue
             script.append(f'(PATH="$LISTENERS:$PATH"; {command[:-1]}) >"$OUT.{background}" 2>&1 &')

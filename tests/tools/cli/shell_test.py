@@ -16,8 +16,9 @@ def read(*path):
         return file.read()
 
 
-COMMANDS = ["send", "ask", "dump", "top", "gen", "buses", "hub", "attach", "bridge show", "bridge set",
-            "bridge identify", "bridge attach", "kind header", "kind js", "kind md", "robot dbc", "robot check"]
+COMMANDS = ["send", "ask", "dump", "top", "record", "play", "gen", "buses", "hub", "attach", "bridge show",
+            "bridge set", "bridge identify", "bridge attach", "kind header", "kind js", "kind md", "robot dbc",
+            "robot check"]
 
 
 class SyncTest(CliTest):
@@ -73,7 +74,7 @@ class SyncTest(CliTest):
 class ManualTest(CliTest):
     def test_pages_are_clean(self):
         pages = sorted(glob.glob(os.path.join(TOOL, "man", "*.1")))
-        self.assertEqual(len(pages), 12)
+        self.assertEqual(len(pages), 14)
         done = subprocess.run(
             ["mandoc", "-Tlint", "-Wwarning", *pages], capture_output=True, text=True, timeout=GUARD
         )
@@ -93,7 +94,7 @@ class CompletionTest(CliTest):
     # command line, what is offered: bash replaces what follows the last ':' or '='
     LINES = [
         ("roio-cli ", ["--help", "--version", "ask", "attach", "bridge", "buses", "dump", "gen", "help", "hub",
-                       "kind", "robot", "send", "top"]),
+                       "kind", "play", "record", "robot", "send", "top"]),
         ("roio-cli d", ["dump"]),
         ("roio-cli send --cl", ["--class"]),
         ("roio-cli send --wait lo", ["local:robot"]),
@@ -101,13 +102,19 @@ class CompletionTest(CliTest):
         ("roio-cli hub ", ["local:robot"]),
         ("roio-cli hub --bit", ["--bitrate"]),
         ("roio-cli send --class s", ["stream", "system"]),
-        ("roio-cli dump -t ", ["a", "d", "z"]),
+        ("roio-cli dump -t ", ["A", "a", "d", "z"]),
         ("roio-cli dump -n 5 lo", ["local:robot"]),
         ("roio-cli dump local:r", ["local:robot"]),
         ("roio-cli send local:robot ", []),
         ("roio-cli dump local:robot u", ["urgent"]),
         ("roio-cli dump local:robot urgent class=s", ["class=stream", "class=system"]),
         ("roio-cli dump serial:a", ["serial:auto"]),
+        ("roio-cli dump -b lo", ["local:robot"]),
+        ("roio-cli record -o x.log lo", ["local:robot"]),
+        ("roio-cli record local:robot u", ["urgent"]),
+        ("roio-cli record --f", ["--force"]),
+        ("roio-cli play --speed ", ["max"]),
+        ("roio-cli play x.log lo", ["local:robot"]),
         ("roio-cli buses --j", ["--json"]),
         ("roio-cli bridge s", ["set", "show"]),
         ("roio-cli kind ", ["--help", "header", "js", "md"]),

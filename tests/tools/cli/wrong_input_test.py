@@ -14,7 +14,8 @@ EMPTY = "; without DATA the message is empty"
 WORDS = ("expected to=SUBNET.NODE, from=SUBNET.NODE, urgent, normal, class=message|system|stream, "
          "ID:MASK, ID~MASK or the word or")
 
-COMMANDS = "send, ask, dump, top, gen, buses, hub, attach, bridge, kind, robot or help"
+COMMANDS = ("send, ask, dump, top, record, play, gen, buses, hub, "
+            "attach, bridge, kind, robot or help")
 
 # command line, the line on standard error
 WRONG = [
@@ -158,7 +159,7 @@ WRONG = [
      'no frame can satisfy these filters together; put "or" between choices'),
     # ask
     ("ask", "expected BUS, DEST and DATA; `roio-cli ask --help` shows how"),
-    ("ask local:x", "expected DEST after BUS: SUBNET.NODE or SUBNET.*; `roio-cli ask --help` shows how"),
+    ("ask local:x", "expected DEST after BUS: a place, SUBNET.NODE or SUBNET.*; `roio-cli ask --help` shows how"),
     ("ask local:x -", 'address "-": no dot; expected SUBNET.NODE, such as 0.2'),
     ("ask local:x 123#11", 'address "123#11": no dot; expected SUBNET.NODE, such as 0.2'),
     ("ask local:x 0.2 5A2", 'data "5A2": odd number of hex digits; expected two per byte'),
@@ -199,6 +200,35 @@ WRONG = [
     ("attach local:x local:", 'bus "local:": a bus name of 0 bytes; expected 1..64, such as robot'),
     ("attach local:x local:y local:z",
      'expected no more words, found "local:z"; `roio-cli attach --help` shows how'),
+    # record
+    ("record", "expected BUS; `roio-cli record --help` shows how"),
+    ("record -o local:x", "expected BUS; `roio-cli record --help` shows how"),
+    ("record -o - local:x",
+     '-o: expected the name of a file, found "-"; `roio-cli dump --log` writes to standard output'),
+    ("record --json local:x", 'unknown option "--json"; `roio-cli record --help` shows how'),
+    ("record --csv --pcap local:x", "expected either --csv or --pcap, not both"),
+    ("record -o a.pcap local:x local:y",
+     "--pcap: expected one BUS, as its form has no place for a bus's name"),
+    ("record -n 0 local:x", '-n: expected a whole number 1..4294967295, found "0"'),
+    ("record local:x urgnet", 'bad filter "urgnet": ' + WORDS),
+    # play
+    ("play", "expected FILE and BUS; `roio-cli play --help` shows how"),
+    ("play a.log", "expected BUS after FILE, or BUS=NAME for an interface of the log; "
+                   "`roio-cli play --help` shows how"),
+    ("play --speed fast a.log local:x", '--speed: expected a number 0.001..1000 or max, found "fast"'),
+    ("play --speed 0 a.log local:x", '--speed: expected a number 0.001..1000 or max, found "0"'),
+    ("play --speed nan a.log local:x", '--speed: expected a number 0.001..1000 or max, found "nan"'),
+    ("play --speed 1e2 a.log local:x", '--speed: expected a number 0.001..1000 or max, found "1e2"'),
+    ("play --gap -1 a.log local:x", '--gap: expected a whole number 0..86400000, found "-1"'),
+    ("play --loop=x a.log local:x", '--loop: expected a whole number 0..4294967295, found "x"'),
+    ("play --from soon a.log local:x",
+     "--from: expected a time as the log has it, such as 1436509052.25, or +12.5 since its first frame, "
+     'found "soon"'),
+    ("play --loop - local:x", "--loop: expected a file, which can be read again, not standard input"),
+    ("play a.log local:x local:y",
+     'BUS "local:y": expected one BUS, or BUS=NAME for each interface of the log'),
+    ("play --wait a.log can0=can1",
+     "--wait: expected with local:NAME alone; on can0 nobody can tell who listens"),
     # help
     ("help snd",
      f'unknown command "snd": expected {COMMANDS}; `roio-cli --help` shows how'),
@@ -356,8 +386,8 @@ class InformationTest(CliTest):
         self.assertRegex(out, r"^roio-cli \d+\.\d+\.\d+\n$")
 
     def test_help_goes_to_standard_output_and_has_examples(self):
-        for command in ([], ["send"], ["ask"], ["dump"], ["top"], ["gen"], ["buses"], ["attach"],
-                        ["bridge"], ["bridge", "show"], ["bridge", "set"], ["bridge", "identify"],
+        for command in ([], ["send"], ["ask"], ["dump"], ["top"], ["record"], ["play"], ["gen"], ["buses"],
+                        ["attach"], ["bridge"], ["bridge", "show"], ["bridge", "set"], ["bridge", "identify"],
                         ["bridge", "attach"], ["kind"], ["kind", "header"], ["kind", "js"], ["kind", "md"],
                         ["robot"], ["robot", "dbc"], ["robot", "check"]):
             for option in ("--help", "-h"):
@@ -369,7 +399,8 @@ class InformationTest(CliTest):
 
 
     def test_help_is_a_command_too(self):
-        for command in ([], ["send"], ["dump"], ["buses"], ["bridge"], ["bridge", "set"], ["kind"], ["robot", "dbc"]):
+        for command in ([], ["send"], ["dump"], ["record"], ["play"], ["buses"], ["bridge"], ["bridge", "set"],
+                        ["kind"], ["robot", "dbc"]):
             self.assertEqual(self.run_cli("help", *command), self.run_cli(*command, "--help"))
 
 

@@ -33,8 +33,9 @@ _roio_cli_arguments_before() {
   local index count=0
   for ((index = $1; index < COMP_CWORD; ++index)); do
     case ${COMP_WORDS[index]} in
-      --from | --class | --count | --interval | --timeout | -n | -T | -t) ((++index)) ;;
-      --bitrate | --mode | --address | --seconds | -o | --output) ((++index)) ;;
+      --from | --class | --count | --interval | --timeout | -n | -T | -t | -b) ((++index)) ;;
+      -o | --output | --speed | --gap | --robot) ((++index)) ;;
+      --bitrate | --mode | --address | --seconds) ((++index)) ;;
       --load | --rate | --size | --to | --id | --seed | --time) ((++index)) ;;
       -?*) ;;
       *) ((++count)) ;;
@@ -46,42 +47,56 @@ _roio_cli_arguments_before() {
 _roio_cli_words() {
   local command=${COMP_WORDS[1]} previous=${COMP_WORDS[COMP_CWORD - 1]}
   if [ "$COMP_CWORD" -eq 1 ]; then
-    echo send ask dump top gen buses hub attach bridge kind robot help --help --version
+    echo send ask dump top record play gen buses hub attach bridge kind robot help --help --version
     return
   fi
   case $previous in
     --class) echo message system stream; return ;;
     --mode) echo normal listen loopback; return ;;
     --address) echo none; return ;;
-    -t) echo a d z; return ;;
+    -t) echo a A d z; return ;;
+    -b) _roio_cli_all_buses; return ;;
+    -o | --robot) compgen -f -- "$current"; return ;;
+    --speed) echo max; return ;;
     --size) echo random; return ;;
-    --to) echo random; return ;;
-    --from) [ "$command" = gen ] && echo random; return ;;
-    --count | --interval | --timeout | -n | -T | --bitrate | --seconds) return ;;
+    --from | --to) [ "$command" = gen ] && echo random; return ;;
+    --count | --interval | --timeout | --gap | -n | -T | --bitrate | --seconds) return ;;
     --load | --rate | --id | --seed | --time) return ;;
   esac
   case $command:$current in
-    send:-*) echo --from --urgent --class --count --interval --timeout --wait --dec --help; return ;;
-    ask:-*) echo --from --urgent --class --timeout --json --dec --help; return ;;
-    top:-*) echo --bitrate --interval -n --json --help; return ;;
+    send:-*) echo --robot --from --urgent --class --count --interval --timeout --wait --dec --help; return ;;
+    ask:-*) echo --robot --from --urgent --class --timeout --json --dec --help; return ;;
+    top:-*) echo --robot --bitrate --interval -n --json --help; return ;;
     gen:-*) echo --check --load --rate --bitrate --size --from --to --urgent --id --seed --count --time -T --timeout --verbose --help; return ;;
     attach:-*) echo --verbose --help; return ;;
-    dump:-*) echo -n -T -t --log --json --no-foreign --errors --verbose --help; return ;;
+    dump:-*) echo --robot -x -n -T -t -b -c --log --json --csv --pcap --no-foreign --errors --verbose --help; return ;;
+    record:-*) echo --robot -o --force --csv --pcap -n -T --no-foreign --errors -b --help; return ;;
+    play:-*) echo --speed --gap --from --to --loop --timeout --wait --help; return ;;
     buses:-*) echo --json --help; return ;;
     hub:-*) echo --bitrate --help; return ;;
-    send:* | ask:* | dump:* | top:* | gen:*) ;;
+    send:* | ask:* | dump:* | record:* | top:* | gen:*) ;;
     attach:*) [ "$(_roio_cli_arguments_before 2)" -lt 2 ] && _roio_cli_all_buses; return ;;
+    play:*) _roio_cli_play_words; return ;;
     hub:*) _roio_cli_buses; return ;;
     bridge:*) _roio_cli_bridge_words; return ;;
     kind:*) _roio_cli_kind_words; return ;;
     robot:*) _roio_cli_robot_words; return ;;
-    help:*) [ "$COMP_CWORD" -eq 2 ] && echo send ask dump top gen buses hub attach bridge kind robot; return ;;
+    help:*) [ "$COMP_CWORD" -eq 2 ] && echo send ask dump top record play gen buses hub attach bridge kind robot; return ;;
     *) return ;;
   esac
   if [ "$(_roio_cli_arguments_before 2)" -eq 0 ]; then
     _roio_cli_all_buses
-  elif [ "$command" = dump ]; then
+  elif [ "$command" = dump ] || [ "$command" = record ]; then
     echo to= from= urgent normal class=message class=system class=stream or
+  fi
+}
+
+# The log, and then where it goes.
+_roio_cli_play_words() {
+  if [ "$(_roio_cli_arguments_before 2)" -eq 0 ]; then
+    compgen -f -- "$current"
+  else
+    _roio_cli_all_buses
   fi
 }
 

@@ -33,7 +33,7 @@ function __roio_cli_is_argument
             set skip 0
         else
             switch $word
-                case --from --class --count --interval --timeout -n -T -t --bitrate --mode --address --seconds --load --rate --size --to --id --seed --time -o --output
+                case --from --class --count --interval --timeout -n -T -t -b -o --output --speed --gap --to --robot --bitrate --mode --address --seconds --load --rate --size --id --seed --time
                     set skip 1
                 case '-?*'
                 case '*'
@@ -81,6 +81,8 @@ complete -c roio-cli -n __fish_use_subcommand -a send -d 'Send a message, or lin
 complete -c roio-cli -n __fish_use_subcommand -a ask -d 'Send a message, and print the answer'
 complete -c roio-cli -n __fish_use_subcommand -a dump -d 'Show what is on a bus'
 complete -c roio-cli -n __fish_use_subcommand -a top -d 'Show who is on a bus, live'
+complete -c roio-cli -n __fish_use_subcommand -a record -d 'Keep what is on a bus in a file'
+complete -c roio-cli -n __fish_use_subcommand -a play -d 'Send what a log has, when it says'
 complete -c roio-cli -n __fish_use_subcommand -a gen -d 'Send numbered messages, or check them'
 complete -c roio-cli -n __fish_use_subcommand -a buses -d 'List the buses that can be opened'
 complete -c roio-cli -n __fish_use_subcommand -a hub -d 'Carry a local bus until a signal'
@@ -91,7 +93,7 @@ complete -c roio-cli -n __fish_use_subcommand -a robot -d 'Look at a robot file,
 complete -c roio-cli -n __fish_use_subcommand -a help -d 'Print the help of a command'
 complete -c roio-cli -n __fish_use_subcommand -l version -d 'Print the version and end'
 complete -c roio-cli -s h -l help -d 'Print help and end'
-complete -c roio-cli -n '__fish_seen_subcommand_from send ask dump top gen; and __roio_cli_needs_bus' -a '(__roio_cli_buses) serial:(__roio_cli_ports)'
+complete -c roio-cli -n '__fish_seen_subcommand_from send ask dump record top gen; and __roio_cli_needs_bus' -a '(__roio_cli_buses) serial:(__roio_cli_ports)'
 
 complete -c roio-cli -n '__fish_seen_subcommand_from send' -l from -x -d 'Source address'
 complete -c roio-cli -n '__fish_seen_subcommand_from send' -l urgent -d 'Ahead of normal messages'
@@ -104,13 +106,17 @@ complete -c roio-cli -n '__fish_seen_subcommand_from send' -l dec -d 'DATA are d
 
 complete -c roio-cli -n '__fish_seen_subcommand_from dump' -s n -x -d 'End after so many frames'
 complete -c roio-cli -n '__fish_seen_subcommand_from dump' -s T -x -d 'End after so many ms without a frame'
-complete -c roio-cli -n '__fish_seen_subcommand_from dump' -s t -x -a 'a\tabsolute d\tdelta z\tzero' -d 'Time of each line'
+complete -c roio-cli -n '__fish_seen_subcommand_from dump' -s t -x -a 'a\tabsolute A\tdated d\tdelta z\tzero' -d 'Time of each line'
 complete -c roio-cli -n '__fish_seen_subcommand_from dump' -l log -d 'As candump -L'
 complete -c roio-cli -n '__fish_seen_subcommand_from dump' -l json -d 'JSON lines'
+complete -c roio-cli -n '__fish_seen_subcommand_from dump' -l csv -d 'Comma-separated values'
+complete -c roio-cli -n '__fish_seen_subcommand_from dump' -l pcap -d 'A capture for Wireshark'
+complete -c roio-cli -n '__fish_seen_subcommand_from dump' -s c -d 'A colour for each source'
+complete -c roio-cli -n '__fish_seen_subcommand_from dump' -s b -x -a '(__roio_cli_buses) serial:(__roio_cli_ports)' -d 'One more bus'
 complete -c roio-cli -n '__fish_seen_subcommand_from dump' -l no-foreign -d 'Hide what is no Roio message'
 complete -c roio-cli -n '__fish_seen_subcommand_from dump' -l errors -d 'Show error reports'
 complete -c roio-cli -n '__fish_seen_subcommand_from dump' -s v -l verbose -d 'Say when listening, and counts'
-complete -c roio-cli -n '__fish_seen_subcommand_from dump; and not __roio_cli_needs_bus' -a 'to= from= urgent normal class=message class=system class=stream or'
+complete -c roio-cli -n '__fish_seen_subcommand_from dump record; and not __roio_cli_needs_bus' -a 'to= from= urgent normal class=message class=system class=stream or'
 
 complete -c roio-cli -n '__fish_seen_subcommand_from ask' -l from -x -d 'Own address, that answers go to'
 complete -c roio-cli -n '__fish_seen_subcommand_from ask' -l urgent -d 'Ahead of normal messages'
@@ -143,7 +149,34 @@ complete -c roio-cli -n '__fish_seen_subcommand_from gen' -s v -l verbose -d 'Ch
 complete -c roio-cli -n '__roio_cli_attach' -s v -l verbose -d 'Say the counts once a second'
 complete -c roio-cli -n '__roio_cli_attach; and not __roio_cli_is_argument 2 3' -a '(__roio_cli_buses) serial:(__roio_cli_ports)'
 
-complete -c roio-cli -n 'set -l words (commandline -opc); test (count $words) = 2; and test $words[2] = help' -a 'send ask dump top gen buses hub attach bridge kind robot'
+complete -c roio-cli -n '__fish_seen_subcommand_from record' -s o -r -F -d 'Where to'
+complete -c roio-cli -n '__fish_seen_subcommand_from record' -l force -d 'Overwrite the file'
+complete -c roio-cli -n '__fish_seen_subcommand_from record' -l csv -d 'Comma-separated values'
+complete -c roio-cli -n '__fish_seen_subcommand_from record' -l pcap -d 'A capture for Wireshark'
+complete -c roio-cli -n '__fish_seen_subcommand_from record' -s n -x -d 'End after so many frames'
+complete -c roio-cli -n '__fish_seen_subcommand_from record' -s T -x -d 'End after so many ms without a frame'
+complete -c roio-cli -n '__fish_seen_subcommand_from record' -l no-foreign -d 'Leave out what is no Roio message'
+complete -c roio-cli -n '__fish_seen_subcommand_from record' -l errors -d 'Error reports too'
+complete -c roio-cli -n '__fish_seen_subcommand_from record' -s b -x -a '(__roio_cli_buses) serial:(__roio_cli_ports)' -d 'One more bus'
+
+complete -c roio-cli -n '__fish_seen_subcommand_from play' -l speed -x -a max -d 'Times as fast as the log'
+complete -c roio-cli -n '__fish_seen_subcommand_from play' -l gap -x -d 'Cut longer pauses, ms'
+complete -c roio-cli -n '__fish_seen_subcommand_from play' -l from -x -d 'Begin at this time of the log'
+complete -c roio-cli -n '__fish_seen_subcommand_from play' -l to -x -d 'End after this time of the log'
+complete -c roio-cli -n '__fish_seen_subcommand_from play' -l loop -d 'Again and again'
+complete -c roio-cli -n '__fish_seen_subcommand_from play' -l timeout -x -d 'Longest wait for the bus, ms'
+complete -c roio-cli -n '__fish_seen_subcommand_from play' -l wait -d 'Until somebody listens on a local bus'
+complete -c roio-cli -n '__fish_seen_subcommand_from play; and __roio_cli_needs_bus' -F
+complete -c roio-cli -n '__fish_seen_subcommand_from play; and not __roio_cli_needs_bus' -a '(__roio_cli_buses) serial:(__roio_cli_ports)'
+
+complete -c roio-cli -n '__fish_seen_subcommand_from send' -l robot -r -F -d 'Robot file with the names'
+complete -c roio-cli -n '__fish_seen_subcommand_from ask' -l robot -r -F -d 'Robot file with the names'
+complete -c roio-cli -n '__fish_seen_subcommand_from dump' -l robot -r -F -d 'Robot file with the names'
+complete -c roio-cli -n '__fish_seen_subcommand_from record' -l robot -r -F -d 'Robot file with the names'
+complete -c roio-cli -n '__fish_seen_subcommand_from top' -l robot -r -F -d 'Robot file with the names'
+complete -c roio-cli -n '__fish_seen_subcommand_from dump' -s x -d 'Bytes in place of names'
+
+complete -c roio-cli -n 'set -l words (commandline -opc); test (count $words) = 2; and test $words[2] = help' -a 'send ask dump top record play gen buses hub attach bridge kind robot'
 
 complete -c roio-cli -n '__fish_seen_subcommand_from hub' -l bitrate -x -d 'Pace of the bus, bit/s'
 complete -c roio-cli -n '__fish_seen_subcommand_from hub; and __roio_cli_needs_bus' -a '(__roio_cli_buses)'

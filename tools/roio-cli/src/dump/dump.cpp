@@ -94,9 +94,7 @@ int dump(const DumpOptions& options) {
   const auto format = make_format(options, listener.origins());
   Dump shown(*format);
   if (options.verbose) {
-    for (const Origin& origin : listener.origins()) {
-      note(origin.bus + ": listening");
-    }
+    note(names_of(listener.origins()) + ": listening");
   }
   listener.run(shown);
   say_counts(listener, options.verbose);

@@ -1,5 +1,7 @@
 #include "form/json_lines.hpp"
 
+#include <chrono>
+#include <cmath>
 #include <iterator>
 #include <nlohmann/json.hpp>
 #include <roio/json.hpp>
@@ -133,8 +135,22 @@ std::optional<ParseError> read_data(const Json& value, Frame& frame) {
   return std::nullopt;
 }
 
+/// Microseconds, which a double has until the year 2112; none where there is no such time.
+std::optional<Timestamp> read_time(const Json& object) {
+  constexpr double latest_s = 4e9;
+  const auto field = object.find("timestamp");
+  if (field == object.end() || !field->is_number()) {
+    return std::nullopt;
+  }
+  const double seconds = field->get<double>();
+  if (!(seconds >= 0 && seconds <= latest_s)) {
+    return std::nullopt;
+  }
+  return Timestamp(std::chrono::microseconds(std::llround(seconds * 1e6)));
+}
+
 /// A frame that is no message, as JsonFormat::foreign() writes it.
-Parsed<std::optional<Frame>> read_foreign(const Json& object) {
+Parsed<std::optional<JsonFrame>> read_foreign(const Json& object) {
   for (const char* name : {"kind", "id", "length", "data"}) {
     if (!object.contains(name)) {
       return field_error(name, "missing; a frame of type CAN has kind, id, length and data");
@@ -152,7 +168,7 @@ Parsed<std::optional<Frame>> read_foreign(const Json& object) {
                        "expected standard, standard-remote, extended, extended-remote or error");
   }
   if (*kind == FrameKind::error) {
-    return std::optional<Frame>();
+    return std::optional<JsonFrame>();
   }
   const auto id = read_whole(object["id"], max_id(*kind));
   if (!id) {
@@ -166,11 +182,11 @@ Parsed<std::optional<Frame>> read_foreign(const Json& object) {
   if (const auto error = read_data(object["data"], frame)) {
     return *error;
   }
-  return std::optional(frame);
+  return std::optional(JsonFrame{frame, read_time(object)});
 }
 
 /// What is of another type than a message; nothing when it is neither.
-std::optional<Parsed<std::optional<Frame>>> parse_other(std::string_view line) {
+std::optional<Parsed<std::optional<JsonFrame>>> parse_other(std::string_view line) {
   const auto object = read_object(line);
   if (!object || !object->contains("type")) {
     return std::nullopt;
@@ -180,7 +196,7 @@ std::optional<Parsed<std::optional<Frame>>> parse_other(std::string_view line) {
     return read_foreign(*object);
   }
   if (type == "lost" || type == "CAN FD" || type == "state") {
-    return std::optional<Frame>();
+    return std::optional<JsonFrame>();
   }
   return std::nullopt;
 }
@@ -201,13 +217,14 @@ std::string without_bus(std::string_view line) {
 
 }  // namespace
 
-Parsed<std::optional<Frame>> parse_json_line(std::string_view named_line, Address default_source,
-                                             const Robot* robot) {
+Parsed<std::optional<JsonFrame>> parse_json_line(std::string_view named_line,
+                                                 Address default_source, const Robot* robot) {
   const std::string line = without_bus(named_line);
-  const auto json = robot != nullptr ? parse_json(line, *robot) : parse_json(line);
+  static const Robot nobody;  // names beside the bytes are passed over, as with any robot
+  const auto json = parse_json(line, robot != nullptr ? *robot : nobody);
   if (!json) {
     const auto other = parse_other(line);
-    return other ? *other : Parsed<std::optional<Frame>>(json.error());
+    return other ? *other : Parsed<std::optional<JsonFrame>>(json.error());
   }
   Message message = json->message;
   if (!json->has_source) {
@@ -217,7 +234,7 @@ Parsed<std::optional<Frame>> parse_json_line(std::string_view named_line, Addres
   if (to_frame(message, frame) != Status::ok) {
     return ParseError{"expected a message of class message, system or stream", 0};
   }
-  return std::optional(frame);
+  return std::optional(JsonFrame{frame, json->time});
 }
 
 std::unique_ptr<RecordFormat> json_format(bool with_bus, std::shared_ptr<const Robot> robot) {

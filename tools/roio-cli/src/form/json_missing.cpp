@@ -15,8 +15,9 @@ constexpr const char* no_json = "this roio-cli was built without JSON (ROIO_BUIL
 
 }  // namespace
 
-Parsed<std::optional<Frame>> parse_json_line(std::string_view /*line*/, Address /*default_source*/,
-                                             const Robot* /*robot*/) {
+Parsed<std::optional<JsonFrame>> parse_json_line(std::string_view /*line*/,
+                                                 Address /*default_source*/,
+                                                 const Robot* /*robot*/) {
   return ParseError{no_json, 0};
 }
 

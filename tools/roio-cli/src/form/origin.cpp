@@ -36,6 +36,14 @@ std::vector<Origin> origins_of(std::span<const std::string> bus_urls) {
   return origins;
 }
 
+std::string names_of(std::span<const Origin> origins) {
+  std::string names;
+  for (const Origin& origin : origins) {
+    names += (names.empty() ? "" : ", ") + origin.bus;
+  }
+  return names;
+}
+
 std::size_t width_of(std::span<const Origin> origins) {
   std::size_t width = 0;
   for (const Origin& origin : origins) {

@@ -21,6 +21,9 @@ inline constexpr std::size_t max_origin_name = 15;
 /// ends with "~2", "~3" and so on.
 std::vector<Origin> origins_of(std::span<const std::string> bus_urls);
 
+/// "can0, local:robot".
+std::string names_of(std::span<const Origin> origins);
+
 /// How wide a column of their names is.
 std::size_t width_of(std::span<const Origin> origins);
 

@@ -7,6 +7,10 @@ namespace {
 
 constexpr std::size_t batch_size = 256;
 
+// So long, once a frame is here, one of another bus that was earlier may still be on its way: from
+// the kernel, or through the program that carries a local bus.
+constexpr std::chrono::milliseconds others_have{2};
+
 }  // namespace
 
 Intake::Intake(std::span<const std::unique_ptr<Bus>> buses) : buses_(buses) {
@@ -35,8 +39,14 @@ Result Intake::receive_from_one(std::size_t most, Timeout timeout) {
 }
 
 Result Intake::receive_from_several(std::size_t most, Timeout timeout) {
-  if (!earliest() && !Interrupt::wait_readable(fds_, timeout)) {
-    return Interrupt::signal() != 0 ? Result::cancelled : Result::timeout;
+  if (!earliest()) {
+    if (!Interrupt::wait_readable(fds_, timeout)) {
+      return Interrupt::signal() != 0 ? Result::cancelled : Result::timeout;
+    }
+    refill();
+  }
+  if (const auto first = earliest(); first && !is_behind()) {
+    static_cast<void>(Interrupt::sleep_until(waiting_[*first].arrived + others_have));
   }
   refill();
   merge(most);
@@ -50,23 +60,34 @@ void Intake::refill() {
       waiting.next = 0;
       waiting.end = buses_[i]->receive(std::span(waiting.batch), no_wait).count;
       waiting.may_have_more = waiting.end == waiting.batch.size();
+      waiting.arrived = Clock::now();
     }
   }
 }
 
-// Ends where a bus has been emptied that may have earlier frames than the others.
+// Ends where another bus may still have what is earlier: where its batch is at its end, it is asked
+// again first.
 void Intake::merge(std::size_t most) {
+  const bool behind = is_behind();
+  const auto now = Clock::now();
   while (heard_.size() < most) {
     const auto from = earliest();
-    if (!from) {
+    if (!from || (!behind && waiting_[*from].arrived + others_have > now)) {
       return;
     }
     Waiting& waiting = waiting_[*from];
     heard_.push_back({*from, &waiting.batch[waiting.next++]});
-    if (waiting.is_empty() && waiting.may_have_more) {
+    if (waiting.is_empty()) {
       return;
     }
   }
+}
+
+// Who does not keep up has no time to wait.
+bool Intake::is_behind() const {
+  return std::any_of(waiting_.begin(), waiting_.end(), [](const Waiting& waiting) {
+    return !waiting.is_empty() && waiting.may_have_more;
+  });
 }
 
 std::optional<std::size_t> Intake::earliest() const {

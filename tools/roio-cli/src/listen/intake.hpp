@@ -1,7 +1,9 @@
-/// What comes in from one bus or from several, in the order of time as far as it has come.
+/// What comes in from one bus or from several: in the order of each bus, and of the times of all as
+/// far as buses bring their frames within milliseconds. A bridge may be slower.
 #ifndef ROIO_CLI_INTAKE_HPP
 #define ROIO_CLI_INTAKE_HPP
 
+#include <chrono>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -32,18 +34,22 @@ class Intake {
   [[nodiscard]] std::span<const Heard> heard() const { return heard_; }
 
  private:
+  using Clock = std::chrono::steady_clock;
+
   /// What has come in from a bus and has not been given yet.
   struct Waiting {
     std::vector<Received> batch;
     std::size_t next = 0;
     std::size_t end = 0;
-    bool may_have_more = false;  ///< On the bus, as the batch was full.
+    bool may_have_more = false;   ///< On the bus, as the batch was full.
+    Clock::time_point arrived{};  ///< When the batch was taken from the bus.
 
     [[nodiscard]] bool is_empty() const { return next == end; }
   };
 
   Result receive_from_one(std::size_t most, Timeout timeout);
   Result receive_from_several(std::size_t most, Timeout timeout);
+  [[nodiscard]] bool is_behind() const;
   void refill();
   void merge(std::size_t most);
   [[nodiscard]] std::optional<std::size_t> earliest() const;

@@ -18,14 +18,6 @@ constexpr std::size_t most_at_once = 256;
 // noticed when no frame comes.
 constexpr Timeout look_around_every = std::chrono::milliseconds(200);
 
-std::string joined(const std::vector<Origin>& origins) {
-  std::string names;
-  for (const Origin& origin : origins) {
-    names += (names.empty() ? "" : ", ") + origin.bus;
-  }
-  return names;
-}
-
 }  // namespace
 
 Listener::Listener(const ListenOptions& options)
@@ -91,7 +83,7 @@ int Listener::finish() const {
     return exit_signal + signal;
   }
   if (options_.count && !has_all()) {
-    note(joined(origins_) + ": " + std::to_string(frames()) + " of " +
+    note(names_of(origins_) + ": " + std::to_string(frames()) + " of " +
          count_of(*options_.count, "frame") + " came in time");
     return exit_failure;
   }

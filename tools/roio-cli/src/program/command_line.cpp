@@ -13,6 +13,8 @@
 #include "gen/words.hpp"
 #include "kind/words.hpp"
 #include "program/words.hpp"
+#include "record/play_words.hpp"
+#include "record/record_words.hpp"
 #include "send/words.hpp"
 #include "top/words.hpp"
 
@@ -26,6 +28,8 @@ constexpr const char* main_examples = R"(Examples:
   roio-cli ask can0 0.2 01                     a question, and its answer
   roio-cli dump serial:auto                    a bridge on a serial port
   roio-cli top can0                            who is there, live
+  roio-cli record -o drive.log can0            until Ctrl-C; and back again:
+  roio-cli play drive.log can0
   roio-cli gen --load 80% can0                 traffic, to try a bus
   roio-cli buses                               what there is to be opened
   roio-cli attach serial:/dev/ttyACM0 vcan0    two buses become one
@@ -51,7 +55,7 @@ constexpr const char* help_examples = R"(Examples:
   roio-cli help bridge set)";
 
 constexpr const char* commands =
-    "send, ask, dump, top, gen, buses, hub, attach, bridge, kind, robot or help";
+    "send, ask, dump, top, record, play, gen, buses, hub, attach, bridge, kind, robot or help";
 
 /// The words with `help COMMAND` said as `COMMAND --help`.
 std::vector<const char*> with_help(int argc, const char* const* argv) {
@@ -90,8 +94,7 @@ const CLI::App& last_command(const CLI::App& app) {
 
 Command parse_command_line(int argc, const char* const* argv) {
   CLI::App app("Sends and shows Roio messages on a CAN bus, and looks after bridges.");
-  prepare(app, "send|ask|dump|top|gen|buses|hub|attach|bridge|kind|robot [OPTIONS] ...",
-          main_examples);
+  prepare(app, "COMMAND [OPTIONS] ...", main_examples);
   bool version = false;
   app.add_flag("--version", version, "Print the version and end")->disable_flag_override();
   app.require_subcommand(0, 1);
@@ -99,6 +102,8 @@ Command parse_command_line(int argc, const char* const* argv) {
   const AskWords ask_words(app);
   const DumpWords dump_words(app);
   const TopWords top_words(app);
+  const RecordWords record_words(app);
+  const PlayWords play_words(app);
   const GenWords gen_words(app);
   CLI::App& buses_app = *app.add_subcommand("buses", "List the buses that can be opened");
   prepare(buses_app, "buses [OPTIONS]", buses_examples);
@@ -142,6 +147,12 @@ Command parse_command_line(int argc, const char* const* argv) {
   }
   if (top_words.parsed()) {
     return top_words.parse();
+  }
+  if (record_words.parsed()) {
+    return record_words.parse();
+  }
+  if (play_words.parsed()) {
+    return play_words.parse();
   }
   if (gen_words.parsed()) {
     return std::visit([](auto options) { return Command(std::move(options)); }, gen_words.parse());

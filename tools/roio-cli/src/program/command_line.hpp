@@ -14,6 +14,8 @@
 #include "gen/check.hpp"
 #include "gen/gen.hpp"
 #include "kind/commands.hpp"
+#include "record/play.hpp"
+#include "record/record.hpp"
 #include "send/send.hpp"
 #include "top/top.hpp"
 
@@ -24,10 +26,11 @@ struct Information {
   std::string text;
 };
 
-using Command = std::variant<Information, SendOptions, AskOptions, DumpOptions, TopOptions,
-                             GenOptions, CheckOptions, BusesOptions, HubOptions, AttachOptions,
-                             BridgeShowOptions, BridgeSetOptions, BridgeIdentifyOptions,
-                             KindOptions, RobotDbcOptions, RobotCheckOptions>;
+using Command =
+    std::variant<Information, SendOptions, AskOptions, DumpOptions, TopOptions, RecordOptions,
+                 PlayOptions, GenOptions, CheckOptions, BusesOptions, HubOptions, AttachOptions,
+                 BridgeShowOptions, BridgeSetOptions, BridgeIdentifyOptions, KindOptions,
+                 RobotDbcOptions, RobotCheckOptions>;
 
 /// @throws UsageError: what was wrong with the words, and what was expected.
 Command parse_command_line(int argc, const char* const* argv);

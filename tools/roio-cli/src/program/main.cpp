@@ -42,6 +42,14 @@ int run(const CheckOptions& options) {
   const Interrupt interrupt;
   return check(options);
 }
+int run(const RecordOptions& options) {
+  const Interrupt interrupt;
+  return record(options);
+}
+int run(const PlayOptions& options) {
+  const Interrupt interrupt;
+  return play(options);
+}
 int run(const HubOptions& options) {
   const Interrupt interrupt;
   return hub(options);

@@ -18,11 +18,17 @@ class HelpFormatter final : public CLI::Formatter {
   std::string make_usage(const CLI::App* /*app*/, std::string /*name*/) const override {
     return "Usage: roio-cli " + usage_ + '\n';
   }
-  // A flag that may have a value: CLI11 shows its default in braces.
+  // A flag that may have a value: CLI11 shows its default in braces, and the value's name after it.
   std::string make_option_name(const CLI::Option* option, bool is_positional) const override {
     const std::string name = Formatter::make_option_name(option, is_positional);
     const std::size_t brace = name.find('{');
-    return brace == std::string::npos ? name : name.substr(0, brace) + "[=MS]";
+    return brace == std::string::npos
+               ? name
+               : name.substr(0, brace) + "[=" + option->get_type_name() + "]";
+  }
+  std::string make_option_opts(const CLI::Option* option) const override {
+    const bool is_flag = option->get_items_expected_min() == 0;
+    return is_flag ? "" : Formatter::make_option_opts(option);
   }
 
  private:

@@ -51,7 +51,8 @@ SendWords::SendWords(CLI::App& program)
   without_type(app_->add_option("DATA", data_, "1 to 8 bytes in hexadecimal: 5A2D00"));
   option(*app_, "--timeout", timeout_text_, "MS",
          "Longest wait of a message for the bus (default 1000)");
-  wait_ = app_->add_flag("--wait{10000}", wait_text_, "Wait until somebody listens on a local bus");
+  wait_ = app_->add_flag("--wait{10000}", wait_text_, "Wait until somebody listens on a local bus")
+              ->type_name("MS");
 }
 
 SendOptions SendWords::parse_options(const Robot* robot) const {
