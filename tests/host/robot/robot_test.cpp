@@ -55,6 +55,15 @@ std::string shown(const std::optional<NamedMessage>& message) {
   return out;
 }
 
+/// A kind that hears "m" with these fields.
+std::string kind_text(const std::string& name, const std::string& fields) {
+  std::string out = R"({"roio": 1, "kind": ")";
+  out += name;
+  out += R"(", "hears": {"m": {"fields": [)";
+  out += fields;
+  return out + "]}}}";
+}
+
 constexpr Address left{0, 1};
 constexpr Address right{0, 2};
 constexpr Address lamp{0, 3};
@@ -216,12 +225,8 @@ TEST_F(RobotNames, BroadcastsMeanTheSameOrNothing) {
        R"({"name": "x", "type": "enum", "values": {"on": 2, "off": 0}})", false},
   };
   for (const auto& row : rows) {
-    const auto kind = [](const std::string& name, const std::string& fields) {
-      return R"({"roio": 1, "kind": ")" + name + R"(", "hears": {"m": {"fields": [)" + fields +
-             "]}}}";
-    };
-    write("a.kind.json", kind("a", row.one));
-    write("b.kind.json", kind("b", row.other));
+    write("a.kind.json", kind_text("a", row.one));
+    write("b.kind.json", kind_text("b", row.other));
     const Robot robot = RobotNames::robot();
     const std::uint8_t data[] = {0};
     const Header header{Priority::normal, MessageClass::message, all, pc};
