@@ -25,6 +25,7 @@ if WITH_BRIDGE:
 
 DOCUMENTS = os.environ["ROIO_CLI_DOCUMENTS"].split(":")
 PORT = "/dev/ttyACM0"
+EXAMPLES = os.path.join(os.path.dirname(os.path.dirname(DOCUMENTS[0])), "examples")
 
 # Stands for roio-cli in the background: says in a file when a dump, or a check, listens.
 LISTENER = r"""#!/bin/bash
@@ -127,6 +128,7 @@ class DocumentTest(CliTest):
                     for name, text in files.items():
                         with open(os.path.join(folder, name), "w") as file:
                             file.write(text)
+                    os.symlink(EXAMPLES, os.path.join(folder, "examples"))
                     self.folder = folder
                     if PORT not in block:
                         self.check(block, env)

@@ -231,11 +231,11 @@ class NamedLabels final : public Labels {
     return address.node == 2 ? "arm" : "a very long name indeed";
   }
   [[nodiscard]] MessageLabel message(const Message& /*message*/) const override {
-    return {"angles", "shoulder=90° elbow=45° hand=0°\n", true  [[nodiscard]] std::size_t address_width() const noexcept override { return 1; }
-  [[nodiscard]] std::size_t message_width() const noexcept override { return 1; }
-};
+    return {"angles", "shoulder=90° elbow=45° hand=0°\n", true};
   }
   [[nodiscard]] std::uint32_t variant(const Frame& /*frame*/) const noexcept override { return 0; }
+  [[nodiscard]] std::size_t address_width() const noexcept override { return 1; }
+  [[nodiscard]] std::size_t message_width() const noexcept override { return 1; }
 };
 
 TEST(View, NamesHaveTheRoomTheyNeedAndFieldsTheRest) {
