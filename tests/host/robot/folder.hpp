@@ -14,6 +14,14 @@ namespace roio::test {
 /// A folder of a test's own in which it stands, so that files are called in errors as they are
 /// here; and no kinds of this machine's are found.
 class RobotFolder : public ::testing::Test {
+ public:
+  RobotFolder(const RobotFolder&) = delete;
+  RobotFolder& operator=(const RobotFolder&) = delete;
+  ~RobotFolder() override {
+    std::filesystem::current_path(before_);
+    std::filesystem::remove_all(path_);
+  }
+
  protected:
   RobotFolder() : before_(std::filesystem::current_path()) {
     std::string name = (std::filesystem::temp_directory_path() / "roio-robot-XXXXXX").string();
@@ -21,10 +29,6 @@ class RobotFolder : public ::testing::Test {
     std::filesystem::current_path(path_);
     ::setenv("XDG_DATA_DIRS", "/nowhere", 1);
     ::setenv("XDG_DATA_HOME", "/nowhere", 1);
-  }
-  ~RobotFolder() override {
-    std::filesystem::current_path(before_);
-    std::filesystem::remove_all(path_);
   }
 
   [[nodiscard]] const std::filesystem::path& path() const { return path_; }

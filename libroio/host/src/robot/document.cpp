@@ -58,11 +58,11 @@ class Builder final : public nlohmann::json_sax<nlohmann::json> {
   }
   bool parse_error(std::size_t position, const std::string& last_token,
                    const nlohmann::json::exception& error) override {
+    const std::size_t fault = position > 0 ? position - 1 : 0;  // position counts the character
     constexpr int number_overflow = 406;
     if (error.id == number_overflow) {
-      source_.refuse(taken_, next_place(), quote(last_token) + " is too large a number");
+      source_.refuse(fault, next_place(), quote(last_token) + " is too large a number");
     }
-    const std::size_t fault = position > 0 ? position - 1 : 0;  // position counts the character
     const SyntaxState state{open_.empty() ? std::nullopt : std::optional(open_.back()->type),
                             has_key_, is_begun_ && open_.empty()};
     refuse_syntax(source_, fault, next_place(), state);
@@ -142,9 +142,11 @@ class Builder final : public nlohmann::json_sax<nlohmann::json> {
   [[nodiscard]] std::string place() const {
     std::string out;
     for (std::size_t i = 1; i < open_.size(); ++i) {
-      out = open_[i - 1]->type == Value::Type::object
-                ? place_in(out, open_[i]->name)
-                : out + '[' + std::to_string(open_[i - 1]->children.size() - 1) + ']';
+      if (open_[i - 1]->type == Value::Type::object) {
+        out = place_in(out, open_[i]->name);
+      } else {
+        out += '[' + std::to_string(open_[i - 1]->children.size() - 1) + ']';
+      }
     }
     return out;
   }

@@ -144,9 +144,9 @@ Parsed<Kind> load_kind(const std::filesystem::path& file) {
   const std::string name = file.filename().string();
   const std::string suffix = robot_file::kind_suffix;
   if (!name.ends_with(suffix) || name.size() == suffix.size()) {
-    return ParseError{robot_file::shown_name(origin) +
-                          ": not called as a kind's file is; expected NAME" + suffix,
-                      0};
+    return ParseError{
+        robot_file::shown_name(origin) + ": not called as a kind's file is; expected NAME" + suffix,
+        0};
   }
   const Parsed<std::string> text = robot_file::read_file(file);
   if (!text) {
