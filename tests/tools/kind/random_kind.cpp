@@ -28,6 +28,10 @@ constexpr std::array names{"angle",     "default",  "switch",      "int",
                            "Angle",     "data",     "data_length", "light",
                            "LightMode", "mode"};
 
+// What ends a comment, or goes on with it, in one of the languages.
+constexpr std::array descriptions{"ends with a backslash \\", "and with a space \\ ",
+                                  "and a trigraph ?\?/", "*/ }"};
+
 int below(std::mt19937& random, int end) {
   return std::uniform_int_distribution<int>(0, end - 1)(random);
 }
@@ -183,7 +187,8 @@ void add_messages(std::mt19937& random, Json& kind, const char* direction) {
       message["tag"] = below(random, 256);
     }
     if (chance(random, 30)) {
-      message["description"] = "ends with a backslash */ \\";
+      message["description"] =
+          descriptions.at(static_cast<std::size_t>(below(random, descriptions.size())));
     }
     Json tried = kind;
     tried[direction][new_name(random, taken)] = message;
