@@ -11,21 +11,26 @@ using Json = nlohmann::ordered_json;
 
 // Keywords, macros of Arduino and of the PC, what the generated code calls its own, and names that
 // are one in a language that has no '-'.
-constexpr std::array names{"angle",   "default",  "switch",      "int",
-                           "class",   "LOW",      "HIGH",        "PI",
-                           "PORTB",   "SP",       "A0",          "EOF",
-                           "stdin",   "linux",    "errno",       "SPI_STC_vect",
-                           "min",     "max",      "abs",         "bit",
-                           "round",   "word",     "F",           "B1",
-                           "a-b",     "a_b",      "aB",          "a--b",
-                           "length",  "tag",      "length_",     "minimum_length",
-                           "pack",    "unpack",   "bytes",       "from",
-                           "to",      "read",     "message",     "is_valid",
-                           "Message", "i",        "value",       "minimum",
-                           "scale",   "toString", "constructor", "valueOf",
-                           "uint8_t", "true",     "and",         "x",
-                           "X",       "heard",    "AnyMessage",  "length_of",
-                           "Angle",   "data",     "data_length"};
+constexpr std::array names{"angle",     "default",  "switch",      "int",
+                           "class",     "LOW",      "HIGH",        "PI",
+                           "PORTB",     "SP",       "A0",          "EOF",
+                           "stdin",     "linux",    "errno",       "SPI_STC_vect",
+                           "min",       "max",      "abs",         "bit",
+                           "round",     "word",     "F",           "B1",
+                           "a-b",       "a_b",      "aB",          "a--b",
+                           "length",    "tag",      "length_",     "minimum_length",
+                           "pack",      "unpack",   "bytes",       "from",
+                           "to",        "read",     "message",     "is_valid",
+                           "Message",   "i",        "value",       "minimum",
+                           "scale",     "toString", "constructor", "valueOf",
+                           "uint8_t",   "true",     "and",         "x",
+                           "X",         "heard",    "AnyMessage",  "length_of",
+                           "Angle",     "data",     "data_length", "light",
+                           "LightMode", "mode"};
+
+// What ends a comment, or goes on with it, in one of the languages.
+constexpr std::array descriptions{"ends with a backslash \\", "and with a space \\ ",
+                                  "and a trigraph ?\?/", "*/ }"};
 
 int below(std::mt19937& random, int end) {
   return std::uniform_int_distribution<int>(0, end - 1)(random);
@@ -182,7 +187,8 @@ void add_messages(std::mt19937& random, Json& kind, const char* direction) {
       message["tag"] = below(random, 256);
     }
     if (chance(random, 30)) {
-      message["description"] = "ends with a backslash */ \\";
+      message["description"] =
+          descriptions.at(static_cast<std::size_t>(below(random, descriptions.size())));
     }
     Json tried = kind;
     tried[direction][new_name(random, taken)] = message;

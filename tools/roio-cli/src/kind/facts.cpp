@@ -67,6 +67,7 @@ std::string one_line(std::string_view text) {
   std::replace_if(
       line.begin(), line.end(),
       [](char c) { return static_cast<unsigned char>(c) < ' ' || c == '\x7f'; }, ' ');
+  line.erase(line.find_last_not_of(' ') + 1);
   return line;
 }
 

@@ -28,7 +28,8 @@ std::string in_unit(const Field& field, std::int64_t raw);
 /// "1", "1/10".
 std::string to_string(const Fraction& scale);
 
-/// All of `text` in one line: control characters are spaces.
+/// All of `text` in one line, as files have them; in a kind that a program has made, control
+/// characters are spaces. No space at the end.
 std::string one_line(std::string_view text);
 
 }  // namespace roio::cli

@@ -14,18 +14,20 @@ namespace {
 using header::FieldNames;
 using header::MessageNames;
 
-/// A text for people as a line of comment. A backslash at the end would go on with the next line.
+/// A text for people as a line of comment. A backslash at the end, also as a trigraph, would go on
+/// with the next line.
 std::string comment(std::string_view mark, const std::string& text) {
   const std::string line = one_line(text);
-  return line.empty() ? "" : fmt::format("{} {}{}\n", mark, line, line.ends_with('\\') ? " ." : "");
+  const bool goes_on = line.ends_with('\\') || line.ends_with("?\?/");
+  return line.empty() ? "" : fmt::format("{} {}{}\n", mark, line, goes_on ? " ." : "");
 }
 
 /// "0 to 180 deg"; where one on the wire is not one of the unit, "0 to 200, each 1/2 deg".
 std::string what_it_holds(const Field& field) {
   std::string text = range_of(field);
   if (field.scale.numerator != field.scale.denominator) {
-    text = fmt::format("{} to {}, each {}{}{}", field.minimum, field.maximum, to_string(field.scale),
-                       field.unit.empty() ? "" : " ", field.unit);
+    text = fmt::format("{} to {}, each {}{}{}", field.minimum, field.maximum,
+                       to_string(field.scale), field.unit.empty() ? "" : " ", field.unit);
   }
   return field.description.empty() ? text : text + ": " + field.description;
 }

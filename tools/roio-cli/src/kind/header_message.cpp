@@ -225,15 +225,20 @@ MessageNames names_of(const MessageKind& message, Scope& scope) {
       &message, scope.add(type_identifier(message.name)), scope.add(identifier(message.name)), {}};
   Scope members{names.type, "length", "minimum_length", "tag"};
   for (const Field& field : message.fields) {
-    FieldNames added{&field, members.add(identifier(field.name)), {}, {}, {}};
+    FieldNames added{&field, {}, {}, {}, {}};
     if (field.form == Field::Form::choice) {
+      // No member may have the name of another's type.
       added.choice_type = scope.add(type_identifier(message.name + '-' + field.name));
+      members.add(added.choice_type);
       Scope choices;
       for (const Choice& choice : field.choices) {
         added.choices.push_back(choices.add(identifier(choice.name)));
       }
     }
     names.fields.push_back(std::move(added));
+  }
+  for (FieldNames& field : names.fields) {
+    field.member = members.add(identifier(field.field->name));
   }
   for (FieldNames& field : names.fields) {
     if (is_bytes(*field.field) && field.field->minimum != field.field->maximum) {
