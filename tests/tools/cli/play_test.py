@@ -8,6 +8,7 @@ import re
 import select
 import signal
 import subprocess
+import time
 
 from driver import CLI, GUARD, CliTest, main
 
@@ -17,10 +18,6 @@ BUS = "local:robot"
 def frames(log):
     """The frames of a log without their times and interfaces."""
     return [line.split()[2] for line in log.splitlines()]
-
-
-def times(log):
-    return [float(line[1:line.index(")")]) for line in log.splitlines()]
 
 
 class PlayTest(CliTest):
@@ -39,7 +36,9 @@ class PlayTest(CliTest):
         """What a log becomes on a bus, as a log; what play said, and its exit status."""
         count = len(text.splitlines()) if count is None else count
         dump = self.dump("--log", "-n", str(count), bus)
+        start = time.monotonic()
         status, err = self.play(*arguments, self.log(text), bus)
+        self.took_ms = (time.monotonic() - start) * 1000
         return dump.process.communicate(timeout=GUARD)[0], status, err
 
 
@@ -91,23 +90,18 @@ class OrderTest(PlayTest):
 
 
 class TimeTest(PlayTest):
-    """Too late is the machine's affair; too early would be ours."""
+    """Of a whole log: too long is the machine's affair; too short would be ours. What each frame is due at, the
+    table of schedule_test.cpp has."""
 
-    def apart(self, log, *least_ms):
-        stamps = times(log)
-        for first, second, least in zip(stamps, stamps[1:], least_ms):
-            # The bus's clock takes the time some way behind.
-            self.assertGreater(second - first, least / 1000 - 0.02)
-
-    def test_frames_are_as_far_apart_as_in_the_log(self):
+    def test_it_takes_as_long_as_the_log(self):
         text = "(7.000000) x 001#\n(7.100000) x 002#\n(7.100000) x 003#\n(7.400000) x 004#\n"
         log, status, _ = self.played(text)
         self.assertEqual((status, frames(log)), (0, frames(text)))
-        self.apart(log, 100, 0, 300)
+        self.assertGreaterEqual(self.took_ms, 400)
 
     def test_slower(self):
-        log, _, _ = self.played("(7.00) x 001#\n(7.05) x 002#\n", "--speed", "0.2")
-        self.apart(log, 250)
+        self.played("(7.00) x 001#\n(7.05) x 002#\n", "--speed", "0.2")
+        self.assertGreaterEqual(self.took_ms, 250)
 
     def test_an_hour_is_not_waited_for_when_it_is_cut_or_made_short(self):
         text = "(0.0) x 001#\n(3600.0) x 002#\n(7200.0) x 003#\n"
@@ -116,7 +110,7 @@ class TimeTest(PlayTest):
                 log, status, _ = self.played(text, *options)
                 self.assertEqual((status, frames(log)), (0, frames(text)))
                 if options[0] == "--gap":
-                    self.apart(log, 50, 50)
+                    self.assertGreaterEqual(self.took_ms, 100)
 
     def test_a_signal_ends_a_pause_of_hours(self):
         dump = self.dump("-n", "1", BUS)
@@ -133,7 +127,8 @@ class TimeTest(PlayTest):
         log, status, err = self.played(text, "--gap", "100")
         self.assertEqual((status, err), (
             0, "roio-cli: drive.log: 4 frames sent, the log's time went back 1 time\n"))
-        self.apart(log, 0, 100, 100)
+        self.assertEqual(frames(log), frames(text))
+        self.assertGreaterEqual(self.took_ms, 200)
 
     def test_times_that_cannot_be_read_follow_the_frame_before(self):
         text = "(-0.5) x 001#\n(7.0) x 002#\n(2015-07-10 08:17:32.2) x 003#\n004#\n(7.1) x 005#\n"
@@ -142,7 +137,6 @@ class TimeTest(PlayTest):
             0, "roio-cli: drive.log: 5 frames sent, 3 without a time sent at once\n"))
         log = dump.process.communicate(timeout=GUARD)[0]
         self.assertEqual(frames(log), ["001#", "002#", "003#", "004#", "005#"])
-        self.apart(log, 0, 0, 0, 100)
 
     def test_from_and_to(self):
         text = "".join(f"({100 + number}.5) x {number:03X}#\n" for number in range(10))
@@ -173,7 +167,7 @@ class TimeTest(PlayTest):
         log, status, err = self.played(text, "--loop=3", count=6)
         self.assertEqual((status, err), (0, "roio-cli: drive.log: 6 frames sent\n"))
         self.assertEqual(frames(log), ["001#", "002#"] * 3)
-        self.apart(log, 50, 0, 50, 0, 50)
+        self.assertGreaterEqual(self.took_ms, 150)
 
     def test_for_ever_ends_by_a_signal(self):
         dump = self.dump("-n", "50", BUS)

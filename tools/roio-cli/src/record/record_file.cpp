@@ -95,7 +95,9 @@ std::optional<RecordFile> RecordFile::create_dated(Form form) {
   std::string name = stem + ending;
   int fd = open_new(name);
   for (int number = 2; fd < 0 && errno == EEXIST && number < most_a_second; ++number) {
-    name = stem + "-" + std::to_string(number) + ending;
+    name = stem;
+    name += "-" + std::to_string(number);
+    name += ending;
     fd = open_new(name);
   }
   if (fd < 0) {

@@ -21,6 +21,8 @@ class RecordFile {
   /// before its ending when there is one of that moment.
   static std::optional<RecordFile> create_dated(Form form);
 
+  RecordFile(const RecordFile&) = delete;
+  RecordFile& operator=(const RecordFile&) = delete;
   RecordFile(RecordFile&& other) noexcept;
   RecordFile& operator=(RecordFile&&) = delete;
   ~RecordFile();
