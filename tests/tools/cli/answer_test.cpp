@@ -47,9 +47,11 @@ TEST(Answer, WhichMessagesAreOne) {
     if (expected) {
       const auto filters = answer_filters(question);
       const std::uint32_t id = tagged_id(received.frame);
-      EXPECT_TRUE(std::any_of(filters.begin(), filters.end(), [&](const SocketCanFilter& filter) {
-        return (id & filter.can_mask) == (filter.can_id & filter.can_mask);
-      })) << what << ": the bus lets it through";
+      EXPECT_TRUE(std::any_of(filters.begin(), filters.end(),
+                              [&](const SocketCanFilter& filter) {
+                                return (id & filter.can_mask) == (filter.can_id & filter.can_mask);
+                              }))
+          << what << ": the bus lets it through";
     }
   }
 }

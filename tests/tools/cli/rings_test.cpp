@@ -42,7 +42,8 @@ TEST(Rings, NamesOfJoints) {
   EXPECT_EQ(parsed->second, joint.second);
   for (const char* other :
        {"", "roio-attach:", "roio-bridge-attach:vcan0", "roio-attach:0000000000000123",
-        "roio-attach:0000000000000123-fedcba987654321", "roio-attach:0000000000000123-fedcba987654321g",
+        "roio-attach:0000000000000123-fedcba987654321",
+        "roio-attach:0000000000000123-fedcba987654321g",
         "roio-attach:0000000000000123-fedcba98765432100"}) {
     EXPECT_FALSE(parse_joint(other)) << other;
   }

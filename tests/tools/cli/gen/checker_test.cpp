@@ -45,31 +45,35 @@ TEST(Checker, WhatItSaysOfNumbers) {
       {"started late", range(50, 10),
        "10 received, from number 50, 0 lost, 0 doubled, 0 out of order"},
       {"one missing", {0, 1, 3}, "3 received, from number 0, 1 lost, 0 doubled, 0 out of order"},
-      {"many missing", {0, 100000},
+      {"many missing",
+       {0, 100000},
        "2 received, from number 0, 99999 lost, 0 doubled, 0 out of order"},
-      {"one twice", {0, 1, 1, 2},
-       "4 received, from number 0, 0 lost, 1 doubled, 0 out of order"},
+      {"one twice", {0, 1, 1, 2}, "4 received, from number 0, 0 lost, 1 doubled, 0 out of order"},
       {"the first twice", {5, 5}, "2 received, from number 5, 0 lost, 1 doubled, 0 out of order"},
-      {"one thrice", {0, 1, 1, 1},
-       "4 received, from number 0, 0 lost, 2 doubled, 0 out of order"},
-      {"late is not lost", {0, 2, 1, 3},
+      {"one thrice", {0, 1, 1, 1}, "4 received, from number 0, 0 lost, 2 doubled, 0 out of order"},
+      {"late is not lost",
+       {0, 2, 1, 3},
        "4 received, from number 0, 0 lost, 0 doubled, 1 out of order"},
-      {"late, and then again", {0, 2, 1, 1},
+      {"late, and then again",
+       {0, 2, 1, 1},
        "4 received, from number 0, 0 lost, 1 doubled, 1 out of order"},
-      {"one before the first was never missed", {5, 4, 6},
+      {"one before the first was never missed",
+       {5, 4, 6},
        "3 received, from number 5, 0 lost, 0 doubled, 1 out of order"},
       {"twice, at the edge of the window", range(10000, Sequence::window) + Numbers{10000},
        "4097 received, from number 10000, 0 lost, 1 doubled, 0 out of order"},
-      {"beyond it nobody knows whether it was lost", range(10000, Sequence::window + 1) +
-                                                         Numbers{10000},
+      {"beyond it nobody knows whether it was lost",
+       range(10000, Sequence::window + 1) + Numbers{10000},
        "4098 received, from number 10000, 0 lost, 0 doubled, 1 out of order"},
-      {"late after a gap wider than the window", {0, 10000, 9000},
+      {"late after a gap wider than the window",
+       {0, 10000, 9000},
        "3 received, from number 0, 9998 lost, 0 doubled, 1 out of order"},
       {"began anew", range(0, 10000) + range(0, 10),
        "10010 received, from number 0, 0 lost, 0 doubled, 0 out of order, began anew 1 time"},
       {"over the end of the numbers", range(0xFFFFFFFE, 4),
        "4 received, from number 4294967294, 0 lost, 0 doubled, 0 out of order"},
-      {"lost over the end of the numbers", {0xFFFFFFFE, 1},
+      {"lost over the end of the numbers",
+       {0xFFFFFFFE, 1},
        "2 received, from number 4294967294, 2 lost, 0 doubled, 0 out of order"},
   };
   for (const auto& [what, numbers, expected] : rows) {
@@ -96,7 +100,8 @@ TEST(Checker, LengthsMayBeMixed) {
     const auto data = write_numbered({1, false}, number, length);
     sequence.add(*read_numbered({data.data(), length}));
   }
-  EXPECT_EQ(sequence.counts().lost + sequence.counts().doubled + sequence.counts().out_of_order, 0U);
+  EXPECT_EQ(sequence.counts().lost + sequence.counts().doubled + sequence.counts().out_of_order,
+            0U);
   EXPECT_EQ(sequence.counts().last, 66999U);
 }
 

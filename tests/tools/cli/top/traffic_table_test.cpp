@@ -54,8 +54,8 @@ TEST_F(TrafficTableTest, WhatMakesARow) {
       {"another destination", message({0, 10}, {0, 3}, "5A2D00"), true},
       {"a broadcast", message({0, 10}, {0, 255}, "5A2D00"), true},
       {"urgent", message({0, 10}, {0, 2}, "5A2D00", Priority::urgent), true},
-      {"another class",
-       message({0, 10}, {0, 2}, "5A2D00", Priority::normal, MessageClass::system), true},
+      {"another class", message({0, 10}, {0, 2}, "5A2D00", Priority::normal, MessageClass::system),
+       true},
       {"a remote request", remote, true},
       {"an 11-bit identifier", standard, true},
       {"an error report is no traffic", error, false},
@@ -110,10 +110,8 @@ TEST_F(TrafficTableTest, MarksTheBytesThatChangedInTheLastIntervalThatBroughtAny
 TEST_F(TrafficTableTest, RatesOfPeriodicMessages) {
   // period, for how long, the rate, whether silent; asked at the last frame
   const std::vector<std::tuple<const char*, Timeout, int, double>> rows{
-      {"1 kHz", milliseconds(1), 5000, 1000},
-      {"10 Hz", milliseconds(100), 50, 10},
-      {"every 5 s", seconds(5), 4, 0.2},
-      {"every minute", seconds(60), 3, 1.0 / 60},
+      {"1 kHz", milliseconds(1), 5000, 1000}, {"10 Hz", milliseconds(100), 50, 10},
+      {"every 5 s", seconds(5), 4, 0.2},      {"every minute", seconds(60), 3, 1.0 / 60},
       {"two alone", milliseconds(500), 2, 2},
   };
   for (const auto& [what, period, count, rate] : rows) {

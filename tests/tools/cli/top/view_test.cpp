@@ -73,27 +73,25 @@ TEST(View, In80By24EverythingIsThere) {
 }
 
 TEST(View, In40By10TheValueIsCutOffAndSaysSo) {
-  EXPECT_EQ(drawn(example(), {}, {40, 10}),
-            (Text{
-                "local:robot  error-active  500000 bit/s",
-                "load  42.1 %, peak  97.3 %, 3120 frames/",
-                "123456 frames, 0 lost, 0 errors, 0 times",
-                "source   dest     msg rate/s value",
-                "0.3      0.*      [1]      - 01",
-                "0.10     0.2      [3]   10.0 5A 2D*00",
-                "11-bit   123      [8]    812 01 02 03 +",
-                "29-bit   1C00400A [2]   0.05 remote req+",
-                "",
-                "q quit  h help  s sort: source",
-            }));
+  EXPECT_EQ(drawn(example(), {}, {40, 10}), (Text{
+                                                "local:robot  error-active  500000 bit/s",
+                                                "load  42.1 %, peak  97.3 %, 3120 frames/",
+                                                "123456 frames, 0 lost, 0 errors, 0 times",
+                                                "source   dest     msg rate/s value",
+                                                "0.3      0.*      [1]      - 01",
+                                                "0.10     0.2      [3]   10.0 5A 2D*00",
+                                                "11-bit   123      [8]    812 01 02 03 +",
+                                                "29-bit   1C00400A [2]   0.05 remote req+",
+                                                "",
+                                                "q quit  h help  s sort: source",
+                                            }));
 }
 
 TEST(View, AWideScreenHasPriorityAndCounts) {
   const Text lines = drawn(example(), {}, {120, 24});
   EXPECT_EQ(lines[3],
             "source      to        prio    class    msg     frames  rate/s     age  value");
-  EXPECT_EQ(lines[4],
-            "0.3      -> 0.*       urgent  message  [1]         10       -    75 s  01");
+  EXPECT_EQ(lines[4], "0.3      -> 0.*       urgent  message  [1]         10       -    75 s  01");
 }
 
 TEST(View, NoSizeIsTooSmallAndNoLineTooWide) {
@@ -146,12 +144,13 @@ TEST(View, WhatIsWrongIsSaidOnTop) {
   view.paused = true;
   Text lines = drawn(snapshot, view, {160, 24});
   lines.resize(3);
-  EXPECT_EQ(lines, (Text{
-                       "local:robot  absent  PAUSED",
-                       "3120 frames/s, 210500 bit/s, peak 486500 bit/s; load: see --bitrate",
-                       "123456 frames, 7 lost, 12 without a row, the controller lost some 1 time, 1 "
-                       "error, 2 times bus-off, 1 outage, 3 CAN FD frames not shown",
-                   }));
+  EXPECT_EQ(lines,
+            (Text{
+                "local:robot  absent  PAUSED",
+                "3120 frames/s, 210500 bit/s, peak 486500 bit/s; load: see --bitrate",
+                "123456 frames, 7 lost, 12 without a row, the controller lost some 1 time, 1 "
+                "error, 2 times bus-off, 1 outage, 3 CAN FD frames not shown",
+            }));
 }
 
 TEST(View, AnEmptyBusSaysSo) {
@@ -171,9 +170,9 @@ TEST(View, ScrollsAsFarAsThereAreRows) {
   ASSERT_EQ(rows_on_screen(size), 19U);
   // what is pressed, the first row after it
   const std::vector<std::tuple<Action, std::size_t>> steps{
-      {Action::line_up, 0},    {Action::line_down, 1}, {Action::page_down, 20},
+      {Action::line_up, 0},    {Action::line_down, 1},  {Action::page_down, 20},
       {Action::page_down, 26}, {Action::line_down, 26}, {Action::page_up, 7},
-      {Action::line_up, 6},    {Action::to_last, 26},  {Action::to_first, 0},
+      {Action::line_up, 6},    {Action::to_last, 26},   {Action::to_first, 0},
   };
   View view;
   for (const auto& [action, first] : steps) {
@@ -198,9 +197,10 @@ TEST(View, RowsThatWentLeaveNoEmptyScreen) {
 TEST(View, EverySortKeyAndItsReverse) {
   Snapshot snapshot;
   // source 0.1 to 0.9, 0.2 to 0.8, 0.3 to 0.7
-  snapshot.rows = {row(0x10010003 | 7U << 13, FrameKind::extended, {}, 30, std::chrono::seconds(3)),
-                   row(0x10000001 | 9U << 13, FrameKind::extended, {}, 20, std::chrono::seconds(1)),
-                   row(0x10000002 | 8U << 13, FrameKind::extended, {}, 10, std::chrono::seconds(2))};
+  snapshot.rows = {
+      row(0x10010003 | 7U << 13, FrameKind::extended, {}, 30, std::chrono::seconds(3)),
+      row(0x10000001 | 9U << 13, FrameKind::extended, {}, 20, std::chrono::seconds(1)),
+      row(0x10000002 | 8U << 13, FrameKind::extended, {}, 10, std::chrono::seconds(2))};
   snapshot.rows[0].last.id = 0x10000003U | 7U << 13;
   snapshot.rows[1].frames = 5;
   const auto sources = [&](const View& view) {
@@ -245,19 +245,24 @@ TEST(View, NamesHaveTheRoomTheyNeedAndFieldsTheRest) {
 }
 
 TEST(RowText, RatesAndAges) {
-  for (const auto& [rate, text] : std::vector<std::pair<double, const char*>>{
-           {0, "-"}, {0.004, "0.00"}, {0.05, "0.05"}, {9.994, "9.99"}, {9.996, "10.0"},
-           {99.94, "99.9"}, {99.96, "100"}, {15000.4, "15000"}}) {
+  for (const auto& [rate, text] : std::vector<std::pair<double, const char*>>{{0, "-"},
+                                                                              {0.004, "0.00"},
+                                                                              {0.05, "0.05"},
+                                                                              {9.994, "9.99"},
+                                                                              {9.996, "10.0"},
+                                                                              {99.94, "99.9"},
+                                                                              {99.96, "100"},
+                                                                              {15000.4, "15000"}}) {
     EXPECT_EQ(rate_text(rate), text);
   }
-  for (const auto& [age, text] : std::vector<std::pair<Timeout, const char*>>{
-           {std::chrono::milliseconds(0), "0.0 s"},
-           {std::chrono::milliseconds(9949), "9.9 s"},
-           {std::chrono::milliseconds(9951), "10 s"},
-           {std::chrono::seconds(99), "99 s"},
-           {std::chrono::seconds(120), "2 min"},
-           {std::chrono::hours(3), "3 h"},
-           {std::chrono::hours(24 * 30), "30 d"}}) {
+  for (const auto& [age, text] :
+       std::vector<std::pair<Timeout, const char*>>{{std::chrono::milliseconds(0), "0.0 s"},
+                                                    {std::chrono::milliseconds(9949), "9.9 s"},
+                                                    {std::chrono::milliseconds(9951), "10 s"},
+                                                    {std::chrono::seconds(99), "99 s"},
+                                                    {std::chrono::seconds(120), "2 min"},
+                                                    {std::chrono::hours(3), "3 h"},
+                                                    {std::chrono::hours(24 * 30), "30 d"}}) {
     EXPECT_EQ(age_text(age), text);
   }
 }

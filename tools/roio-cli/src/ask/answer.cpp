@@ -9,8 +9,8 @@ namespace roio::cli {
 
 std::vector<SocketCanFilter> answer_filters(const Message& question) {
   const Address asked = question.header.destination;
-  const std::string from = is_broadcast(asked) ? std::to_string(asked.subnet) + ".any"
-                                               : to_string(asked);
+  const std::string from =
+      is_broadcast(asked) ? std::to_string(asked.subnet) + ".any" : to_string(asked);
   const std::vector<std::string> words{"from=" + from, "to=" + to_string(question.header.source)};
   return *compile_filter_words(words);
 }

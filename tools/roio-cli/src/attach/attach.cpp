@@ -51,8 +51,7 @@ std::unique_ptr<Claim> claim_interface(const BusUrl& one, const BusUrl& other) {
   }
   return std::make_unique<Claim>(
       "roio-bridge-attach:" + other.target,
-      other.target +
-          ": another bridge is attached to it; give this one an interface of its own");
+      other.target + ": another bridge is attached to it; give this one an interface of its own");
 }
 
 void refuse_one_bus(const AttachOptions& options) {

@@ -114,8 +114,9 @@ JointClaim::JointClaim(const std::string& first_name, const std::string& second_
     }
   }
   if (closes_ring(others, own)) {
-    throw Failure(what + ": joined already, by way of other buses that roio-cli attach joins; "
-                         "frames would go round for ever");
+    throw Failure(what +
+                  ": joined already, by way of other buses that roio-cli attach joins; "
+                  "frames would go round for ever");
   }
 }
 

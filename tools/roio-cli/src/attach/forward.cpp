@@ -25,7 +25,8 @@ Forwarder::Forwarder(NamedBus from, NamedBus to, Inspect inspect)
     : from_(std::move(from)),
       to_(std::move(to)),
       inspect_(std::move(inspect)),
-      patience_(send_time), thread_([this] {
+      patience_(send_time),
+      thread_([this] {
         try {
           run();
         } catch (...) {

@@ -24,7 +24,8 @@ struct NamedBus {
 /// nobody else may receive from one, or send to the other.
 class Forwarder {
  public:
-  /// Sees the frames before they are handed on, in the Forwarder's thread. What it throws ends that.
+  /// Sees the frames before they are handed on, in the Forwarder's thread. What it throws ends
+  /// that.
   using Inspect = std::function<void(std::span<const Frame>)>;
 
   Forwarder(NamedBus from, NamedBus to, Inspect inspect = {});

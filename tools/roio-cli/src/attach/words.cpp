@@ -29,7 +29,8 @@ AttachWords::AttachWords(CLI::App& program)
 AttachOptions AttachWords::parse() const {
   refuse_rest(*app_, "attach");
   if (first_.empty() || second_.empty()) {
-    refuse("attach", first_.empty() ? "expected two buses" : "expected another BUS after the first");
+    refuse("attach",
+           first_.empty() ? "expected two buses" : "expected another BUS after the first");
   }
   return {parse_bus(first_), parse_bus(second_), verbose_->count() > 0};
 }

@@ -45,9 +45,7 @@ class Check {
   }
 
  private:
-  [[nodiscard]] bool has_all() const {
-    return options_.count && received_ >= *options_.count;
-  }
+  [[nodiscard]] bool has_all() const { return options_.count && received_ >= *options_.count; }
 
   [[nodiscard]] Timeout time_left() const {
     const Clock::time_point now = Clock::now();

@@ -11,8 +11,8 @@ namespace roio::cli {
 
 struct CheckOptions {
   std::string bus;
-  std::optional<std::uint64_t> count;             ///< End after so many received.
-  std::optional<std::chrono::milliseconds> time;  ///< End after so long.
+  std::optional<std::uint64_t> count;                   ///< End after so many received.
+  std::optional<std::chrono::milliseconds> time;        ///< End after so long.
   std::optional<std::chrono::milliseconds> quiet_time;  ///< End after so long without one.
   bool verbose = false;
 };

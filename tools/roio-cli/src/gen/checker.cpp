@@ -122,10 +122,10 @@ bool Checker::failed() const {
 
 std::string to_string(const Checker::Report& report) {
   const SequenceCounts& counts = report.counts;
-  std::string text = fmt::format(
-      "{} #{}: {} received, from number {}, {} lost, {} doubled, {} out of order",
-      report.generator.roams ? "any" : to_string(report.source), report.generator.id,
-      counts.received, counts.first, counts.lost, counts.doubled, counts.out_of_order);
+  std::string text =
+      fmt::format("{} #{}: {} received, from number {}, {} lost, {} doubled, {} out of order",
+                  report.generator.roams ? "any" : to_string(report.source), report.generator.id,
+                  counts.received, counts.first, counts.lost, counts.doubled, counts.out_of_order);
   if (counts.restarts > 0) {
     text += ", began anew " + count_of(counts.restarts, "time");
   }

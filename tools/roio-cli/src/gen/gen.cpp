@@ -39,7 +39,8 @@ class Generation {
     }
   }
 
-  /// Until count, time, or a signal. @throws Failure: a message had to wait longer than the timeout.
+  /// Until count, time, or a signal. @throws Failure: a message had to wait longer than the
+  /// timeout.
   void run() {
     while (!has_all() && !is_over() && wait_for_turn() && send(due())) {
     }
@@ -50,10 +51,10 @@ class Generation {
   [[nodiscard]] std::string report() const {
     const double s = std::max(std::chrono::duration<double>(Clock::now() - start_).count(), 1e-6);
     const TrafficOptions& traffic = options_.traffic;
-    std::string text = fmt::format(
-        "{}: {} sent as {} #{} in {:.3f} s, {:.0f}/s", bus_.name(), count_of(sent_, "message"),
-        traffic.source ? to_string(*traffic.source) : "any", traffic.id, s,
-        static_cast<double>(sent_) / s);
+    std::string text =
+        fmt::format("{}: {} sent as {} #{} in {:.3f} s, {:.0f}/s", bus_.name(),
+                    count_of(sent_, "message"), traffic.source ? to_string(*traffic.source) : "any",
+                    traffic.id, s, static_cast<double>(sent_) / s);
     if (bitrate_) {
       constexpr double percent = 100;
       text += fmt::format(", load {:.1f} %", bits_ / s / *bitrate_ * percent);

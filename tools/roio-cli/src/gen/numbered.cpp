@@ -68,8 +68,8 @@ std::optional<Numbered> read_numbered(std::span<const std::uint8_t> data) {
   }
   numbered.bits = static_cast<std::uint8_t>(8 * bytes);
   // Check and filler are those that a generator makes.
-  const auto expected = write_numbered(numbered.generator, numbered.number,
-                                       static_cast<std::uint8_t>(data.size()));
+  const auto expected =
+      write_numbered(numbered.generator, numbered.number, static_cast<std::uint8_t>(data.size()));
   return std::equal(data.begin(), data.end(), expected.begin()) ? std::optional(numbered)
                                                                 : std::nullopt;
 }

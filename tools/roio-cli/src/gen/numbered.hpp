@@ -24,8 +24,8 @@ inline constexpr std::uint8_t shortest_numbered = 4;
 inline constexpr std::uint8_t max_generator = 127;
 
 struct Generator {
-  std::uint8_t id = 0;   ///< 0..127.
-  bool roams = false;    ///< Its messages have any source: the id alone says whose they are.
+  std::uint8_t id = 0;  ///< 0..127.
+  bool roams = false;   ///< Its messages have any source: the id alone says whose they are.
 };
 
 struct Numbered {

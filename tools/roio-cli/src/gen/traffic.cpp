@@ -13,8 +13,8 @@ Frame Traffic::next() {
   Frame frame{};
   frame.kind = FrameKind::extended;
   frame.id = pack_id(header);
-  frame.length = static_cast<std::uint8_t>(
-      options_.shortest + below(options_.longest - options_.shortest + 1U));
+  frame.length = static_cast<std::uint8_t>(options_.shortest +
+                                           below(options_.longest - options_.shortest + 1U));
   const auto data = write_numbered({options_.id, !options_.source}, number_++, frame.length);
   std::copy(data.begin(), data.end(), frame.data);
   return frame;

@@ -22,9 +22,7 @@ struct TrafficOptions {
   std::uint32_t seed = 0;
 
   /// Whether the seed matters.
-  [[nodiscard]] bool is_random() const {
-    return !source || !destination || shortest != longest;
-  }
+  [[nodiscard]] bool is_random() const { return !source || !destination || shortest != longest; }
 };
 
 class Traffic {

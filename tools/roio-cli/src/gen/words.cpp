@@ -172,9 +172,9 @@ TrafficOptions GenWords::parse_traffic() const {
   }
   traffic.priority = urgent_->count() > 0 ? Priority::urgent : Priority::normal;
   std::tie(traffic.shortest, traffic.longest) = parse_size(size_text_);
-  traffic.id = static_cast<std::uint8_t>(
-      id_->count() > 0 ? parse_number("--id", id_text_, 0, max_generator)
-                       : any_number() % (max_generator + 1U));
+  traffic.id =
+      static_cast<std::uint8_t>(id_->count() > 0 ? parse_number("--id", id_text_, 0, max_generator)
+                                                 : any_number() % (max_generator + 1U));
   traffic.seed = seed_->count() > 0
                      ? static_cast<std::uint32_t>(parse_number("--seed", seed_text_, 0, most))
                      : any_number();

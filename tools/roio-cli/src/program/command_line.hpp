@@ -23,10 +23,9 @@ struct Information {
   std::string text;
 };
 
-using Command =
-    std::variant<Information, SendOptions, AskOptions, DumpOptions, TopOptions, GenOptions,
-                 CheckOptions, BusesOptions, HubOptions, AttachOptions, BridgeShowOptions,
-                 BridgeSetOptions, BridgeIdentifyOptions>;
+using Command = std::variant<Information, SendOptions, AskOptions, DumpOptions, TopOptions,
+                             GenOptions, CheckOptions, BusesOptions, HubOptions, AttachOptions,
+                             BridgeShowOptions, BridgeSetOptions, BridgeIdentifyOptions>;
 
 /// @throws UsageError: what was wrong with the words, and what was expected.
 Command parse_command_line(int argc, const char* const* argv);

@@ -36,7 +36,8 @@ class Interrupt {
   /// @param fds at most max_fds; their revents are set, or 0.
   /// @return false when a signal that ends the command ended the wait.
   static constexpr std::size_t max_fds = 7;
-  [[nodiscard]] static bool wait(std::span<pollfd> fds, std::chrono::steady_clock::time_point until);
+  [[nodiscard]] static bool wait(std::span<pollfd> fds,
+                                 std::chrono::steady_clock::time_point until);
 
   /// Waits without limit until fd can be read (or is at its end).
   /// @return false when a signal ended the wait.

@@ -45,8 +45,8 @@ std::string_view first_columns(std::string_view text, std::size_t columns) {
 }  // namespace
 
 std::size_t width_of(std::string_view text) {
-  return static_cast<std::size_t>(
-      std::count_if(text.begin(), text.end(), [](char byte) { return !continues_character(byte); }));
+  return static_cast<std::size_t>(std::count_if(
+      text.begin(), text.end(), [](char byte) { return !continues_character(byte); }));
 }
 
 void Line::add(std::string_view text, Style style) {
@@ -65,7 +65,8 @@ void Line::add(std::string_view text, Style style) {
 void Line::add_left(std::string_view text, std::size_t field, Style style) {
   const std::size_t width = width_of(text);
   if (width > field) {
-    add(std::string(first_columns(text, field > 0 ? field - 1 : 0)) + (field > 0 ? "+" : ""), style);
+    add(std::string(first_columns(text, field > 0 ? field - 1 : 0)) + (field > 0 ? "+" : ""),
+        style);
   } else {
     add(std::string(text) + std::string(field - width, ' '), style);
   }

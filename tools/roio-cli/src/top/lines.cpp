@@ -57,7 +57,8 @@ Json bus_json(const Snapshot& snapshot) {
   json["fdFrames"] = snapshot.fd_frames;
   json["rowless"] = snapshot.rowless;
   json["timestamp"] =
-      std::floor(std::chrono::duration<double, std::micro>(snapshot.time.time_since_epoch()).count()) /
+      std::floor(
+          std::chrono::duration<double, std::micro>(snapshot.time.time_since_epoch()).count()) /
       1e6;
   return json;
 }

@@ -53,7 +53,7 @@ class LoadMeter {
   void complete(std::int64_t number);
   [[nodiscard]] double bits_per_s() const;
 
-  std::array<Bin, 16> bins_{};  // a power of two above all that are summed up or open
+  std::array<Bin, 16> bins_{};          // a power of two above all that are summed up or open
   std::optional<std::int64_t> newest_;  // none: nothing has happened yet
   std::int64_t complete_ = 0;           // bins of the last second that are, 10 at most
   Bin second_{};                        // their sum

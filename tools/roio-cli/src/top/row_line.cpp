@@ -93,14 +93,14 @@ RowLayout::RowLayout(std::span<const RowText> texts, std::size_t all_columns)
   address = std::min(address, widest_address);
   message = std::min(message, widest_message);
   const std::size_t between = narrow ? 1 : 2;
-  std::size_t used = 2 * address + (narrow ? 1 : 4) + between + message + between + rate_width +
-                     between;
+  std::size_t used =
+      2 * address + (narrow ? 1 : 4) + between + message + between + rate_width + between;
   const std::size_t wanted = std::max(value, bytes_width);
-  for (const auto& [shown, width] : std::initializer_list<std::pair<bool*, std::size_t>>{
-           {&with_age, age_width},
-           {&with_class, class_width},
-           {&with_priority, priority_width},
-           {&with_frames, frames_width}}) {
+  for (const auto& [shown, width] :
+       std::initializer_list<std::pair<bool*, std::size_t>>{{&with_age, age_width},
+                                                            {&with_class, class_width},
+                                                            {&with_priority, priority_width},
+                                                            {&with_frames, frames_width}}) {
     if (used + between + width + wanted > columns) {
       break;
     }

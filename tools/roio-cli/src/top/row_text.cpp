@@ -37,8 +37,8 @@ RowText row_text(const TrafficRow& row, const Labels& labels) {
   if (!text.is_message) {
     const bool extended = is_extended(row.last.kind);
     text.source = extended ? "29-bit" : "11-bit";
-    text.destination = extended ? fmt::format("{:08X}", row.last.id)
-                                : fmt::format("{:03X}", row.last.id);
+    text.destination =
+        extended ? fmt::format("{:08X}", row.last.id) : fmt::format("{:03X}", row.last.id);
     text.message_class = "foreign";
     text.message = fmt::format("[{}]", row.last.length);
     return text;

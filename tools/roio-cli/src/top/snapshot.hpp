@@ -17,9 +17,9 @@ struct Snapshot {
   BusState state = BusState::active;
   std::optional<std::uint32_t> bitrate_bps;
   Load load;
-  std::uint64_t frames = 0;   ///< Since the beginning, or `clear`; as all that follow.
-  std::uint64_t lost = 0;     ///< Frames that were due to us and did not come.
-  std::uint64_t errors = 0;   ///< Error reports of the controller.
+  std::uint64_t frames = 0;  ///< Since the beginning, or `clear`; as all that follow.
+  std::uint64_t lost = 0;    ///< Frames that were due to us and did not come.
+  std::uint64_t errors = 0;  ///< Error reports of the controller.
   std::uint64_t bus_offs = 0;
   std::uint64_t outages = 0;
   std::uint64_t overruns = 0;   ///< Reports of a controller that it lost frames, how many unsaid.

@@ -80,18 +80,17 @@ std::size_t last_first_row(std::size_t rows, Size size) {
 Line keys_line(const View& view, std::size_t first, std::size_t shown, std::size_t rows, Size size,
                bool colour) {
   Line line(size.columns, colour);
-  const std::string range =
-      rows > shown ? " rows " + std::to_string(first + 1) + "-" + std::to_string(first + shown) +
-                         " of " + std::to_string(rows)
-                   : "";
+  const std::string range = rows > shown
+                                ? " rows " + std::to_string(first + 1) + "-" +
+                                      std::to_string(first + shown) + " of " + std::to_string(rows)
+                                : "";
   constexpr std::size_t needed_by_all = 72;
   const std::string sort =
       std::string("s sort: ") + sort_names.at(static_cast<std::size_t>(view.sort));
-  const std::string keys =
-      size.columns < needed_by_all
-          ? "q quit  h help  " + sort
-          : "q quit  " + sort + "  r reverse  p " + (view.paused ? "go on" : "pause") +
-                "  c clear  h help";
+  const std::string keys = size.columns < needed_by_all
+                               ? "q quit  h help  " + sort
+                               : "q quit  " + sort + "  r reverse  p " +
+                                     (view.paused ? "go on" : "pause") + "  c clear  h help";
   // The range says that there is more than is seen: rather some keys less.
   const std::size_t room = size.columns - std::min(size.columns, range.size());
   line.add_left(keys, room, Style::bar);
@@ -121,8 +120,8 @@ View after(View view, Action action, std::size_t rows, Size size) {
   first = std::min(first, last);
   switch (action) {
     case Action::sort:
-      view.sort = static_cast<SortKey>((static_cast<std::size_t>(view.sort) + 1) %
-                                       sort_names.size());
+      view.sort =
+          static_cast<SortKey>((static_cast<std::size_t>(view.sort) + 1) % sort_names.size());
       break;
     case Action::reverse:
       view.reversed = !view.reversed;
