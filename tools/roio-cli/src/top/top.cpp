@@ -113,7 +113,7 @@ class Screen final : public Face {
   }
 
   void take_keys(BusWatch& watch) {
-    const auto bytes = terminal_.read();
+    const auto bytes = Terminal::read();
     if (!bytes) {
       end_ = exit_signal + SIGHUP;
       return;
