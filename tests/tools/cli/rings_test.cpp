@@ -95,9 +95,10 @@ TEST_F(RingWatchTest, AFrameThatGoesRoundIsAStorm) {
 TEST_F(RingWatchTest, SeveralCopiesAndOtherTrafficHideNothing) {
   bool well = true;
   for (int i = 0; i < 3000 && well; ++i) {
-    for (const std::uint32_t id : {5U, 5U, 6U}) {
-      well = well && comes(0, frame(id), {});
-      well = well && comes(1, frame(id), {});
+    for (const std::size_t from : {0U, 1U}) {
+      for (const std::uint32_t id : {5U, 5U, 6U}) {
+        well = well && comes(from, frame(id), {});
+      }
     }
     if (i % 10 == 0) {
       well = well && comes(0, frame(9, static_cast<std::uint8_t>(i)), milliseconds(5));
@@ -122,9 +123,15 @@ TEST_F(RingWatchTest, WhatIsNoStorm) {
     ASSERT_TRUE(comes(0, frame(5), milliseconds(100)));
     ASSERT_TRUE(comes(1, frame(5), milliseconds(100))) << "two of one address, ten times a second";
   }
-  for (int i = 0; i < 100; ++i) {
-    ASSERT_TRUE(comes(static_cast<std::size_t>(i % 2), frame(5), milliseconds(1001)))
+  for (std::uint32_t i = 0; i < 100 * 40; ++i) {
+    const milliseconds after(i % 40 == 0 ? 1001 : 0);
+    ASSERT_TRUE(comes(i / 40 % 2, frame(i % 40), after))
         << "what comes after more than a second has not gone round";
+  }
+  for (std::uint32_t i = 0; i < 5000; ++i) {
+    ASSERT_TRUE(comes(i % 2, frame(5), milliseconds(1)));
+    ASSERT_TRUE(comes(0, frame(7, static_cast<std::uint8_t>(i)), {}))
+        << "two of one address, among other traffic";
   }
 }
 

@@ -37,6 +37,13 @@ TEST(Numbered, WhereEachFieldLies) {
   }
 }
 
+// Worked out by another program, from docs/cli.md.
+TEST(Numbered, WholeMessages) {
+  EXPECT_EQ(written({7, false}, 0x01020304, 4), "07E50304");
+  EXPECT_EQ(written({7, true}, 1, 6), "878000000001");
+  EXPECT_EQ(written({7, false}, 0x01020304, 8), "07650102030438AC");
+}
+
 TEST(Numbered, ThereAndBack) {
   for (std::uint8_t length = shortest_numbered; length <= max_data_length; ++length) {
     for (const std::uint32_t number : {0U, 1U, 0xFFFFU, 0x10000U, 0x12345678U, 0xFFFFFFFFU}) {

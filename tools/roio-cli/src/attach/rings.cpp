@@ -31,7 +31,7 @@ bool closes_ring(std::span<const Joint> others, const Joint& joint) {
       }
     }
   }
-  return reached.count(joint.second) > 0;
+  return reached.contains(joint.second);
 }
 
 // FNV-1a. Source: www.isthe.com/chongo/tech/comp/fnv.

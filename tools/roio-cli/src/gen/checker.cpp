@@ -85,7 +85,7 @@ bool Checker::add(const Message& message) {
   const Generator generator = numbered->generator;
   const Address source = generator.roams ? Address{} : message.header.source;
   const Key key{source.subnet, source.node, generator.id, generator.roams};
-  if (sequences_.size() == max_generators && sequences_.count(key) == 0) {
+  if (sequences_.size() == max_generators && !sequences_.contains(key)) {
     ++others_;
     return false;
   }

@@ -98,6 +98,8 @@ void Terminal::enter() {
 }
 
 void Terminal::leave() {
+  // The rest of a screen is left out; CAN ends what it may have broken off.
+  pending_ = pending_.empty() ? "" : "\030";
   pending_ += leave_text;
   pollfd out{STDOUT_FILENO, POLLOUT, 0};
   while (!pending_.empty() && !gone_ && ::poll(&out, 1, leave_ms) == 1) {

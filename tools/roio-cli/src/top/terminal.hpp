@@ -38,7 +38,7 @@ class Terminal {
   /// Goes on with what has not gone out yet.
   void write_on();
   /// The keys that were pressed. None: nobody is there any more.
-  std::optional<std::string> read();
+  static std::optional<std::string> read();
   [[nodiscard]] bool gone() const { return gone_; }
 
   /// Whether something has happened after which all is to be drawn anew: another size, or the
@@ -48,7 +48,6 @@ class Terminal {
  private:
   void enter();
   void leave();
-  void write_all(std::string text);
 
   termios before_{};
   bool has_keys_ = false;

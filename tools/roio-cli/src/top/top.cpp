@@ -119,7 +119,7 @@ class Screen final : public Face {
   }
 
   void take_keys(TrafficWatch& watch) {
-    const auto bytes = terminal_.read();
+    const auto bytes = Terminal::read();
     if (!bytes) {
       end_ = exit_signal + SIGHUP;
       return;
