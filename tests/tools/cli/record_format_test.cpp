@@ -169,6 +169,7 @@ TEST(Origin, NamesAreThoseOfALogAndEachIsAnother) {
       "socketcan:can0", "serial:/dev/serial/by-id/usb-one", "serial:/dev/serial/by-id/usb-two"};
   const auto origins = origins_of(urls);
   std::vector<std::string> names;
+  names.reserve(origins.size());
   for (const Origin& origin : origins) {
     names.push_back(fmt::format("{} {}", origin.bus, origin.log_name));
   }
