@@ -1,5 +1,6 @@
 #include "form/record_format.hpp"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -168,8 +169,9 @@ TEST(Origin, NamesAreThoseOfALogAndEachIsAnother) {
       "socketcan:can0", "serial:/dev/serial/by-id/usb-one", "serial:/dev/serial/by-id/usb-two"};
   const auto origins = origins_of(urls);
   std::vector<std::string> names;
+  names.reserve(origins.size());
   for (const Origin& origin : origins) {
-    names.push_back(origin.bus + " " + origin.log_name);
+    names.push_back(fmt::format("{} {}", origin.bus, origin.log_name));
   }
   EXPECT_EQ(names, (std::vector<std::string>{"can0 can0", "local:robot robot", "local:can0 can0~2",
                                              "socketcan:can0 can0~3",

@@ -276,7 +276,9 @@ class FileTest(RecordTest):
         os.mkfifo(self.path("pipe"))
         record = subprocess.Popen([CLI, "record", "--pcap", "-o", self.path("pipe"), BUS],
                                   stderr=subprocess.PIPE, text=True)
+        self.addCleanup(record.kill)
         with open(self.path("pipe"), "rb", buffering=0) as pipe:
+            self.assertTrue(select.select([pipe], [], [], GUARD)[0])
             self.assertEqual(pipe.read(100), struct.pack("<IHHQII", 0xA1B23C4D, 2, 4, 0, 65535, 227))
             self.send(BUS, "0.2", "01")
             self.assertTrue(select.select([pipe], [], [], GUARD)[0])
