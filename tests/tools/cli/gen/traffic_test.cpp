@@ -77,6 +77,7 @@ TEST(Traffic, OneSeedIsOneTraffic) {
     options.seed = seed;
     Traffic traffic(options);
     std::vector<std::uint32_t> found;
+    found.reserve(10);
     for (int i = 0; i < 10; ++i) {
       found.push_back(traffic.next().id);
     }
