@@ -24,18 +24,20 @@ foreach(header IN LISTS core_headers)
 endforeach()
 
 if(NOT ROIO_BUILD_JSON)
-  set(headers_left_out PATTERN roio/json.hpp EXCLUDE)
+  set(headers_left_out PATTERN roio/json.hpp EXCLUDE PATTERN roio/kind.hpp EXCLUDE PATTERN roio/robot.hpp EXCLUDE)
 endif()
 install(DIRECTORY libroio/core/include/ libroio/host/include/ TYPE INCLUDE
         FILES_MATCHING PATTERN *.hpp ${headers_left_out})
 
-# --- targets: JSON in an export of its own, so that it may be absent ----------------------------------
+# --- targets: those that read JSON in exports of their own, so that they may be absent ------------------
 
 install(TARGETS roio_core roio_host EXPORT roio-targets)
 install(EXPORT roio-targets NAMESPACE roio:: DESTINATION ${roio_config_dir})
 if(ROIO_BUILD_JSON)
-  install(TARGETS roio_json_library EXPORT roio-json-targets)
-  install(EXPORT roio-json-targets NAMESPACE roio:: DESTINATION ${roio_config_dir})
+  foreach(library IN ITEMS json robot)
+    install(TARGETS roio_${library}_library EXPORT roio-${library}-targets)
+    install(EXPORT roio-${library}-targets NAMESPACE roio:: DESTINATION ${roio_config_dir})
+  endforeach()
 endif()
 
 configure_package_config_file(cmake/roio-config.cmake.in roio-config.cmake
@@ -56,12 +58,21 @@ if(BUILD_SHARED_LIBS)
   set(roio_pc_definitions " -DROIO_SHARED")
 endif()
 if(ROIO_BUILD_JSON)
-  list(APPEND pc_files roio-json.pc)
+  list(APPEND pc_files roio-json.pc roio-robot.pc)
 endif()
 foreach(pc_file IN LISTS pc_files)
   configure_file(cmake/${pc_file}.in ${pc_file} @ONLY)
   install(FILES ${CMAKE_CURRENT_BINARY_DIR}/${pc_file} DESTINATION ${roio_pkgconfig_dir})
 endforeach()
+
+# --- kinds of boards, and what an editor knows of them and of robots -------------------------------------
+
+if(ROIO_BUILD_JSON)
+  set(roio_share_dir ${CMAKE_INSTALL_DATADIR}/roio)
+  install(DIRECTORY kinds/ DESTINATION ${roio_share_dir}/kinds COMPONENT tools FILES_MATCHING PATTERN *.kind.json)
+  install(DIRECTORY libroio/host/schema/ DESTINATION ${roio_share_dir}/schema COMPONENT tools
+          FILES_MATCHING PATTERN *.schema.json)
+endif()
 
 # --- and away again ---------------------------------------------------------------------------------
 

@@ -38,8 +38,8 @@ roio-cli shows and sends messages on a CAN bus, a bus between the programs of
 one machine, or through an Arduino as a bridge. roio-sim runs the firmware of
 Arduino boards, unchanged, on a simulated bus.
 .
-The Arduino library is in /usr/share/roio as a zip. To build sketches,
-roio-sim needs the suggested packages.")
+In /usr/share/roio are the Arduino library as a zip, and kinds of boards for
+robot files. To build sketches, roio-sim needs the suggested packages.")
 
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_NAME libroio-dev)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SECTION libdevel)

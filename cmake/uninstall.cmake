@@ -13,9 +13,10 @@ foreach(file IN LISTS files)
     file(REMOVE "${path}")
   endif()
   get_filename_component(folder "${path}" DIRECTORY)
-  if(folder MATCHES "/roio(/|$)")
+  while(folder MATCHES "/roio(/|$)")  # up to our own, though it may have folders alone
     list(APPEND folders "${folder}")
-  endif()
+    get_filename_component(folder "${folder}" DIRECTORY)
+  endwhile()
 endforeach()
 
 list(REMOVE_DUPLICATES folders)

@@ -1,4 +1,5 @@
-/// Roio for host programs: everything but JSON (roio/json.hpp, target roio::json).
+/// Roio for host programs: everything but JSON (roio/json.hpp, target roio::json) and robots with
+/// names (roio/robot.hpp, target roio::robot).
 #ifndef ROIO_HPP
 #define ROIO_HPP
 

@@ -21,7 +21,7 @@ struct Port {
     void put(uint8_t byte) { exchange(byte); }
     uint8_t exchange(uint8_t byte);
     void send(const uint8_t* bytes, uint8_t count);
-    void receive(uint8_t* bytes, uint8_t count);
+    uint8_t* receive(uint8_t* bytes, uint8_t count);
     void release() { select(false); }
     void restart(uint8_t first) {
       select(true);
@@ -68,10 +68,11 @@ void Port::Transaction::send(const uint8_t* bytes, uint8_t count) {
     exchange(*bytes++);
   }
 }
-void Port::Transaction::receive(uint8_t* bytes, uint8_t count) {
+uint8_t* Port::Transaction::receive(uint8_t* bytes, uint8_t count) {
   for (; count != 0; --count) {
     *bytes++ = exchange(0);
   }
+  return bytes;
 }
 void Port::Transaction::select(bool selected) {
   *port_b = selected ? 0 : 4;

@@ -51,10 +51,10 @@ TEST_P(CallTime, NoLongerThanMeasured) {
 }
 
 INSTANTIATE_TEST_SUITE_P(, CallTime,
-                         testing::Values(Row{"CallTimePolled", 0, 7, 28.0, 35.0, 9.8, 16.6},
-                                         Row{"CallTimePolled", 8, 15, 37.6, 44.6, 9.8, 25.6},
-                                         Row{"CallTimeInterrupt", 0, 6, 24.0, 31.4, 2.6, 16.6},
-                                         Row{"CallTimeInterrupt", 8, 14, 34.0, 41.2, 2.6, 25.6}),
+                         testing::Values(Row{"CallTimePolled", 0, 7, 26.6, 34.2, 8.9, 16.3},
+                                         Row{"CallTimePolled", 8, 15, 36.0, 43.8, 8.9, 25.2},
+                                         Row{"CallTimeInterrupt", 0, 6, 23.2, 31.0, 2.6, 16.3},
+                                         Row{"CallTimeInterrupt", 8, 14, 33.0, 40.7, 2.6, 25.2}),
                          [](const testing::TestParamInfo<Row>& row) {
                            return std::string(row.param.image) + std::to_string(row.param.length) +
                                   "Bytes";

@@ -130,9 +130,9 @@ TEST_F(LocalEvents, TheEndOfACarrierAndItsSuccessorAreTold) {
 TEST_F(LocalEvents, NoRoomIsToldWhileNobodyCarriesIt) {
   const auto bus = open(url_, {.open_timeout = no_wait, .background = true, .carry = Carry::never});
   ASSERT_EQ(bus->send(some_frame(), no_wait), Result::timeout);
-  while (!bus->trouble() && !HasFailure()) {
+  do {
     EXPECT_EQ(next_events(*bus), (Events{.state = true}));
-  }
+  } while (!bus->trouble() && !HasFailure());
   EXPECT_EQ(bus->trouble()->code(), Errc::not_connected);
   for (int i = 0; i < 20; ++i) {  // over several of its looks for a carrier
     expect_no_events(*bus);

@@ -62,8 +62,8 @@ class ShownTest(DemoTest):
     def check(self):
         status, out, err = self.demo()
         self.assertEqual((status, err), (0, ""), out)
-        for line in ("0.10   -> 0.2     normal  message  [3]  5A 2D B4",
-                     "0.2    -> 0.10    normal  message  [2]  00 01",
+        for line in ("pc      -> arm      normal  angles    shoulder=90 deg  elbow=45 deg  hand=180 deg",
+                     "arm     -> pc       normal  refusals  count=1",
                      "arm: servo: pin 3 at 90 degrees"):
             self.assertIn(f"  {line}\n", out)
         self.assertNotRegex(out, r"(?m)^  \$ .*build/")

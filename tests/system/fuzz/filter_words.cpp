@@ -1,4 +1,4 @@
-#include "dump/filter_words.hpp"
+#include "listen/filter_words.hpp"
 
 #include <string>
 #include <vector>

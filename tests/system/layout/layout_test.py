@@ -43,6 +43,7 @@ PARTS = {
     "serial": (["libroio/host/src/serial"], ["core", "host", "parts", "text"]),
     "socketcan": (["libroio/host/src/socketcan"], ["core", "host", "parts", "text"]),
     "json": (["libroio/host/src/json"], ["core", "host", "parts", "text"]),
+    "robot": (["libroio/host/src/robot"], ["core", "host", "parts", "text"]),
     # Bus, Node, errors and open() stand above the wings.
     "top": (["libroio/host/src"], ["core", "host", "parts", "text", "local", "serial", "socketcan"]),
     # The simulator, as sim/CMakeLists.txt links it: a wing's public headers, and its own files.
@@ -167,6 +168,8 @@ FORBIDDEN = [
     ("libroio/host/src/json/codec.cpp", '#include "local/hub.hpp"'),
     ("libroio/host/src/serial/bus.cpp", '#include "../local/hub.hpp"'),
     ("libroio/host/src/bus.cpp", '#include "json/fields.hpp"'),  # JSON is a library above
+    ("libroio/host/src/bus.cpp", '#include "robot/exact.hpp"'),  # and robots
+    ("libroio/host/src/robot/robot.cpp", '#include "json/fields.hpp"'),
     ("libroio/host/src/bus.cpp", "#include <roio/sim/time.hpp>"),
     ("sim/src/bus/can_bus.cpp", '#include "mcp2515/map.hpp"'),  # bus < mcp2515 < network, avr < board
     ("sim/include/roio/sim/can_bus.hpp", "#include <roio/sim/mcp2515_chip.hpp>"),

@@ -331,6 +331,37 @@ class AttachTest(BridgeTest):
                          (1, "", f"roio-cli: serial:{self.port}: {IN_USE}\n"))
 
 
+class RecordTest(BridgeTest):
+    """The board's bus is local:robot, which sees what goes through the board, and the other way round. All frames are
+    normal: on local:robot, an urgent one that roio-sim hands over passes those that wait."""
+
+    def recording(self, name, bus, count):
+        record = subprocess.Popen([CLI, "record", "-n", str(count), "-o", self.path(name), bus],
+                                  stderr=subprocess.PIPE, text=True)
+        self.addCleanup(record.kill)
+        self.assertIn(": recording to ", record.stderr.readline())
+        return record
+
+    def frames_of(self, record, name):
+        self.assertRegex(record.communicate(timeout=GUARD)[1], r": \d+ frames recorded, 0 lost\n$")
+        self.assertEqual(record.returncode, 0)
+        with open(self.path(name)) as log:
+            return [line.split()[2] for line in log]
+
+    def test_what_is_played_to_a_board_and_recorded_from_it_is_whole_and_in_order(self):
+        frames = [f"{identifier}#{number:04X}" for number in range(30)
+                  for identifier in ("1000400A", "1400400A")]
+        with open(self.path("drive.log"), "w") as log:
+            log.writelines(f"(1.{number:06}) can0 {frame}\n" for number, frame in enumerate(frames))
+        for source, target in (("serial:" + self.port, "local:robot"), ("local:robot", "serial:" + self.port)):
+            with self.subTest(source=source):
+                record = self.recording("back.log", target, len(frames))
+                status, out, err = self.run_cli("play", "--timeout", "60000", self.path("drive.log"), source)
+                self.assertEqual((status, out), (0, ""), err)
+                self.assertEqual(self.frames_of(record, "back.log"), frames)
+                os.remove(self.path("back.log"))
+
+
 class NothingTest(SimTest):
     def test_what_to_do_when_there_is_no_bus(self):
         os.environ["ROIO_SERIAL_PORTS"] = self.path("ttyACM*")

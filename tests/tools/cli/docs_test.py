@@ -3,7 +3,7 @@
 
 A block is one bash session: "$ " begins a command, "> " goes on with it, the rest is output. Commands
 that end with "&" run until they end by themselves; what they print stands at the block's end, in their
-order. A dump in the background that `send --wait` follows is run as it stands; for others the script waits, in
+order. One in the background that `send --wait` or `play --wait` follows is run as it stands; for others the script waits, in
 place of "sleep". A block after <!-- file NAME --> is a file that the blocks after it find. Blocks that name vcan0, themselves or in a
 file that they name, need real SocketCAN and are run with ROIO_CLI_ON_SOCKETCAN, the others
 without. For blocks that name /dev/ttyACM0 there is a bridge on a simulated board, if there is ROIO_SIM;
@@ -25,13 +25,17 @@ if WITH_BRIDGE:
 
 DOCUMENTS = os.environ["ROIO_CLI_DOCUMENTS"].split(":")
 PORT = "/dev/ttyACM0"
+EXAMPLES = os.path.join(os.path.dirname(os.path.dirname(DOCUMENTS[0])), "examples")
 
-# Stands for roio-cli in the background: says in a file when a dump listens.
+# Stands for roio-cli in the background: says in a file when a dump, or a check, listens.
 LISTENER = r"""#!/bin/bash
-[ "$1" = dump ] || exec "$ROIO_CLI" "$@"
-shift
+case "$1 $2" in
+  'gen --check') shift 2; listen=(gen --check -v) ;;
+  dump\ *) shift; listen=(dump -v) ;;
+  *) exec "$ROIO_CLI" "$@" ;;
+esac
 exec 3>&1
-"$ROIO_CLI" dump -v "$@" 2>&1 >&3 3>&- | while IFS= read -r line; do
+"$ROIO_CLI" "${listen[@]}" "$@" 2>&1 >&3 3>&- | while IFS= read -r line; do
   case $line in
     *': listening') : >"$LISTENING" ;;
     *' shown, 0 lost') ;;
@@ -83,13 +87,13 @@ def session(commands):
     script, background = [ATTACH], 0
     commands = [command for command in commands if not command.startswith("sleep ")]
     for command, follower in zip(commands, commands[1:] + [""]):
-        if " bridge attach " in command:
+        if " attach " in command and command.endswith("&"):
             background += 1
             script.append(f'attach "{command[:-1].strip()}" "$OUT.{background}"')
         elif command.endswith("&"):
             background += 1
             # Output that the command sends elsewhere stays there.
-            if "send --wait" in follower:
+            if "send --wait" in follower or "play --wait" in follower:
                 script.append(f'({command[:-1]}) >"$OUT.{background}" 2>&1 &')
                 continue
             script.append(f'(PATH="$LISTENERS:$PATH"; {command[:-1]}) >"$OUT.{background}" 2>&1 &')
@@ -124,6 +128,7 @@ class DocumentTest(CliTest):
                     for name, text in files.items():
                         with open(os.path.join(folder, name), "w") as file:
                             file.write(text)
+                    os.symlink(EXAMPLES, os.path.join(folder, "examples"))
                     self.folder = folder
                     if PORT not in block:
                         self.check(block, env)

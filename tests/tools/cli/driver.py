@@ -96,6 +96,7 @@ class CliTest(unittest.TestCase):
 
     def setUp(self):
         self.folder = tempfile.mkdtemp(prefix="roio-cli-")
+        os.environ.pop("ROIO_ROBOT", None)
         os.environ["ROIO_RUNTIME_DIR"] = os.path.join(self.folder, "buses")
         self.addCleanup(shutil.rmtree, self.folder, ignore_errors=True)
 

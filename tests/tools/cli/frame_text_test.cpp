@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <chrono>
+#include <cstdlib>
+#include <ctime>
 #include <ostream>
 #include <roio/message.hpp>
 #include <string>
@@ -10,7 +12,7 @@
 namespace roio::cli {
 namespace {
 
-std::string line(const Frame& frame, bool colour = false, Gap gap = Gap::wide) {
+std::string line(const Frame& frame, Colour colour = Colour::none, Gap gap = Gap::wide) {
   Buffer out;
   append_frame(out, frame, colour, gap);
   return {out.data(), out.size()};
@@ -72,20 +74,21 @@ INSTANTIATE_TEST_SUITE_P(
 
 TEST(FrameText, ColumnsLineUpWhateverTheFrame) {
   for (const Gap gap : {Gap::wide, Gap::narrow}) {
-    const std::size_t column = line({0, FrameKind::extended, 1, {1}}, false, gap).find('[');
+    const std::size_t column = line({0, FrameKind::extended, 1, {1}}, Colour::none, gap).find('[');
     for (const FrameKind kind : {FrameKind::standard, FrameKind::standard_remote,
                                  FrameKind::extended_remote, FrameKind::error}) {
-      EXPECT_EQ(line({0x7FF, kind, 1, {1}}, false, gap).find('['), column);
+      EXPECT_EQ(line({0x7FF, kind, 1, {1}}, Colour::none, gap).find('['), column);
     }
   }
 }
 
 TEST(FrameText, NarrowColumnsStandOneSpaceApart) {
-  EXPECT_EQ(line({from_0_10_to_0_2, FrameKind::extended, 2, {0x5A, 0x2D}}, false, Gap::narrow),
-            "0.10   -> 0.2    normal message [2] 5A 2D");
-  EXPECT_EQ(line({0x123, FrameKind::standard, 2, {0x11, 0x22}}, false, Gap::narrow),
+  EXPECT_EQ(
+      line({from_0_10_to_0_2, FrameKind::extended, 2, {0x5A, 0x2D}}, Colour::none, Gap::narrow),
+      "0.10   -> 0.2    normal message [2] 5A 2D");
+  EXPECT_EQ(line({0x123, FrameKind::standard, 2, {0x11, 0x22}}, Colour::none, Gap::narrow),
             "foreign 11-bit 123              [2] 11 22");
-  EXPECT_EQ(line({0x7FF, FrameKind::standard_remote, 4, {}}, false, Gap::narrow),
+  EXPECT_EQ(line({0x7FF, FrameKind::standard_remote, 4, {}}, Colour::none, Gap::narrow),
             "foreign 11-bit 7FF              [4] remote request");
 }
 
@@ -97,20 +100,34 @@ TEST(FrameText, TheWidestMessageFitsBesideEveryTime) {
     TimeColumn time(mode);
     Buffer out;
     time.append(out, Timestamp(std::chrono::nanoseconds(1436509052'249713'999)));
-    append_frame(out, widest, false, time.gap());
+    append_frame(out, widest, Colour::none, time.gap());
     EXPECT_LE(out.size(), 80U) << std::string(out.data(), out.size());
   }
 }
 
 TEST(FrameText, ColourMarksUrgentForeignAndErrorsAndNothingElse) {
   const Frame normal{from_0_10_to_0_2, FrameKind::extended, 0, {}};
-  EXPECT_EQ(line(normal, true), line(normal));
-  EXPECT_EQ(line({0x0000400A, FrameKind::extended, 0, {}}, true),
+  EXPECT_EQ(line(normal, Colour::kinds), line(normal));
+  EXPECT_EQ(line({0x0000400A, FrameKind::extended, 0, {}}, Colour::kinds),
             "\033[1;33m0.10   -> 0.2     urgent  message  [0]\033[0m");
-  EXPECT_EQ(line({0x123, FrameKind::standard, 0, {}}, true),
+  EXPECT_EQ(line({0x123, FrameKind::standard, 0, {}}, Colour::kinds),
             "\033[2mforeign  11-bit 123                [0]\033[0m");
-  EXPECT_EQ(line({0x40, FrameKind::error, 0, {}}, true),
+  EXPECT_EQ(line({0x40, FrameKind::error, 0, {}}, Colour::kinds),
             "\033[31merror    00000040                  [0]  bus-off\033[0m");
+}
+
+TEST(FrameText, ColourBySourceIsTheSourcesAndUrgentIsBold) {
+  const auto from = [](std::uint32_t node) {
+    return line({0x10004000 + node, FrameKind::extended, 0, {}}, Colour::sources);
+  };
+  EXPECT_EQ(from(10), "\033[33m0.10   -> 0.2     normal  message  [0]\033[0m");
+  EXPECT_EQ(line({0x0000400A, FrameKind::extended, 0, {}}, Colour::sources),
+            "\033[33m\033[1m0.10   -> 0.2     urgent  message  [0]\033[0m");
+  for (std::uint32_t node = 1; node < 255; ++node) {
+    EXPECT_NE(from(node).substr(0, 5), from(node - 1).substr(0, 5)) << node;
+  }
+  EXPECT_EQ(line({0x123, FrameKind::standard, 0, {}}, Colour::sources),
+            "\033[2mforeign  11-bit 123                [0]\033[0m");
 }
 
 TEST(FrameText, RoioIsAnExtendedDataFrameOfAKnownClassFromANode) {
@@ -138,6 +155,19 @@ TEST(TimeColumn, NoneIsNothing) {
 TEST(TimeColumn, AbsoluteIsSecondsSince1970) {
   EXPECT_EQ(times(TimeColumn::Mode::absolute, {start, 1'000}),
             "(1436509052.249713) (0000000000.000001) ");
+}
+// As candump -t A, in the time zone of who looks.
+TEST(TimeColumn, DateIsTheLocalOne) {
+  const char* const zone = std::getenv("TZ");
+  const std::string before = zone != nullptr ? zone : "";
+  ::setenv("TZ", "XST-5:45", 1);  // east of Greenwich, by no whole hours
+  ::tzset();
+  EXPECT_EQ(times(TimeColumn::Mode::date, {start, start + 1'000'000, start + 1'000'000'000, 0, -1}),
+            "(2015-07-10 12:02:32.249713) (2015-07-10 12:02:32.250713) "
+            "(2015-07-10 12:02:33.249713) (1970-01-01 05:45:00.000000) "
+            "(1970-01-01 05:44:59.999999) ");
+  zone != nullptr ? ::setenv("TZ", before.c_str(), 1) : ::unsetenv("TZ");
+  ::tzset();
 }
 TEST(TimeColumn, DeltaIsSinceTheFrameBefore) {
   EXPECT_EQ(times(TimeColumn::Mode::delta, {start, start + 1'500'000'000, start + 1'501'000'000}),

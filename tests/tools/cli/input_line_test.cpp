@@ -121,6 +121,26 @@ TEST(InputLine, TheInterfaceIsTheLogs) {
   EXPECT_EQ(parse_input_line("(1.0) vcan7 123#", from)->interface_name, "vcan7");
   EXPECT_EQ(parse_input_line("123#", from)->interface_name, "");
 }
+TEST(InputLine, ATimeIsToldWhereItCanBeRead) {
+  const auto microseconds_of = [](const std::string& line) {
+    const auto time = parse_input_line(line, from)->time;
+    return time ? time->time_since_epoch().count() / 1000 : -1;
+  };
+  EXPECT_EQ(microseconds_of("(1436509052.249713) can0 123#"), 1436509052249713);
+  EXPECT_EQ(microseconds_of("(0.0) can0 123#"), 0);
+  EXPECT_EQ(microseconds_of("(-0.25) can0 123#"), -1);
+  EXPECT_EQ(microseconds_of("(2015-07-10 08:17:32.249713) can0 123#"), -1);
+  EXPECT_EQ(microseconds_of("123#"), -1);
+  const std::string message =
+      R"({"type":"Roio","isBroadcast":true,"subnet":0,"messageLength":0,"data":[])";
+  const std::string other = R"({"type":"CAN","kind":"standard","id":291,"length":0,"data":[])";
+  for (const std::string& line : {message, other}) {
+    EXPECT_EQ(microseconds_of(line + R"(,"timestamp":1436509052.249713})"), 1436509052249713);
+    EXPECT_EQ(microseconds_of(line + R"(,"timestamp":4000000000.999999})"),
+              line == other ? -1 : 4000000000999999);
+    EXPECT_EQ(microseconds_of(line + "}"), -1);
+  }
+}
 TEST(InputLine, JsonOfAnotherFrameIsRefusedWithTheField) {
   for (const auto& [line, error] : {
            std::pair{R"({"type":"CAN","id":1,"length":0,"data":[]})",

@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 """roio-cli on local buses: what send sends, dump shows, in every form; endings and signals."""
 
+import calendar
 import os
 import pty
 import select
@@ -37,6 +38,9 @@ class SendTest(CliTest):
             ([], ["1000400A#5A2D00"], bytes_5a2d00),
             ([], ["123#DEAD"], "foreign  11-bit 123                [2]  DE AD\n"),
             ([], ["123#R4"], "foreign  11-bit 123                [4]  remote request\n"),
+            ([], ["123#R8_F"], "foreign  11-bit 123                [8]  remote request\n"),
+            ([], ["1000400A#0102030405060708_9"],
+             "0.10   -> 0.2     normal  message  [8]  01 02 03 04 05 06 07 08\n"),
             ([], ["0.*", "01"], "0.10   -> 0.*     normal  message  [1]  01\n"),
             ([], ["0.255", "01"], "0.10   -> 0.*     normal  message  [1]  01\n"),
             ([], ["31.254", "0102030405060708"],
@@ -122,6 +126,15 @@ class FormTest(CliTest):
                 ]
             self.assertEqual(self.shown("-t", mode), "".join(f"{stamp} {line}" for line in lines))
 
+    def test_time_with_date(self):
+        dump = self.dump("-n", "1", "-t", "A", BUS, env=dict(os.environ, TZ="UTC"))
+        before = time.time()
+        self.send(BUS, "0.2", "01")
+        line = dump.process.communicate(timeout=GUARD)[0]
+        self.assertRegex(line, r"^\(\d{4}-\d\d-\d\d \d\d:\d\d:\d\d\.\d{6}\) 0.10   -> 0.2    normal message \[1\] 01\n$")
+        said = calendar.timegm(time.strptime(line[1:20], "%Y-%m-%d %H:%M:%S"))
+        self.assertLessEqual(abs(said - before), 2 * GUARD)
+
     def test_log_names_the_bus_without_its_kind(self):
         self.assertEqual(
             self.shown("--log"),
@@ -170,6 +183,65 @@ class FormTest(CliTest):
                 status, out, err = dump.result()
                 self.assertEqual((status, err), (0, ""))
                 self.assertEqual([line[-2:] for line in out.splitlines()], [data, "FF"])
+
+
+class SeveralTest(CliTest):
+    def test_two_buses_have_a_column_for_them_and_a_filter_is_for_both(self):
+        dump = self.dump("-n", "3", BUS, "local:arm", "to=0.any")
+        self.assertEqual(dump.first, "roio-cli: local:robot, local:arm: listening\n")
+        self.send("local:arm", "0.2", "01")
+        self.send("local:arm", "1.2", "FF")
+        self.send(BUS, "0.2", "02")
+        self.send("local:arm", "0.2", "03")
+        self.assertEqual(dump.result(), (
+            0,
+            "arm   0.10   -> 0.2     normal  message  [1]  01\n"
+            "robot 0.10   -> 0.2     normal  message  [1]  02\n"
+            "arm   0.10   -> 0.2     normal  message  [1]  03\n", ""))
+
+    def test_every_form_names_the_bus(self):
+        for options, pattern in (
+            (["--log"], r"^\(\d+\.\d{6}\) arm 123#11$"),
+            (["--json"], r'^{"type":"CAN",.*,"timestamp":\d+(\.\d+)?,"bus":"local:arm"}$'),
+            (["--csv"], r"^\d+\.\d{6},local:arm,standard,0x123,"),
+        ):
+            with self.subTest(options):
+                dump = self.dump("-n", "1", *options, "-b", BUS, "-b", "local:arm")
+                self.send("local:arm", "123#11")
+                out, _ = dump.process.communicate(timeout=GUARD)
+                self.assertRegex(out.splitlines()[-1], pattern)
+
+    def test_json_of_several_can_be_sent_again(self):
+        dump = self.dump("-n", "2", "--json", BUS, "local:arm")
+        self.send("local:arm", "123#11")
+        self.send(BUS, "0.2", "01")
+        out, _ = dump.process.communicate(timeout=GUARD)
+        again = self.dump("-n", "2", "--log", BUS)
+        self.send(BUS, "-", stdin=out)
+        self.assertEqual([line.split()[2] for line in again.result()[1].splitlines()],
+                         ["123#11", "1000400A#01"])
+
+    def test_a_signal_ends_it_and_a_quiet_time(self):
+        dump = self.dump(BUS, "local:arm")
+        dump.signal(signal.SIGINT)
+        self.assertEqual(dump.result(), (130, "", ""))
+        self.assertEqual(self.run_cli("dump", "-T", "50", BUS, "local:arm"), (0, "", ""))
+
+    def test_a_flood_of_both_is_whole_and_in_order(self):
+        count = 3000
+        dump = self.dump("-n", str(2 * count), "--log", BUS, "local:arm")
+        lines = "".join(f"1000400A#{number:08X}\n" for number in range(count))
+        senders = [subprocess.Popen([CLI, "send", bus, "-"], stdin=subprocess.PIPE, text=True)
+                   for bus in (BUS, "local:arm")]
+        for sender in senders:
+            sender.stdin.write(lines)
+            sender.stdin.close()
+        for sender in senders:
+            self.assertEqual(sender.wait(GUARD), 0)
+        out, _ = dump.process.communicate(timeout=GUARD)
+        shown = [line.split() for line in out.splitlines()]
+        for name in ("robot", "arm"):
+            self.assertEqual([frame for _, bus, frame in shown if bus == name], lines.split())
 
 
 class EndTest(CliTest):
@@ -264,12 +336,12 @@ class HubTest(CliTest):
 
 
 class ColourTest(CliTest):
-    def on_a_terminal(self, **variables):
+    def on_a_terminal(self, *options, **variables):
         """What dump writes to a terminal of one urgent message."""
         main_end, terminal = pty.openpty()
         env = {k: v for k, v in os.environ.items() if k not in ("NO_COLOR", "TERM")}
         env.update({"TERM": "xterm"}, **variables)
-        dump = self.dump("-n", "1", BUS, env=env, stdout=terminal)
+        dump = self.dump("-n", "1", *options, BUS, env=env, stdout=terminal)
         self.send("--urgent", BUS, "0.2", "01")
         self.assertEqual(dump.process.wait(GUARD), 0)
         os.close(terminal)
@@ -285,6 +357,24 @@ class ColourTest(CliTest):
         self.assertEqual(self.on_a_terminal(NO_COLOR="1"), plain)
         self.assertEqual(self.on_a_terminal(TERM="dumb"), plain)
         self.assertNotEqual(self.on_a_terminal(NO_COLOR=""), plain)  # no-color.org: when not empty
+        self.assertEqual(
+            self.on_a_terminal("-c"),
+            "\033[33m\033[1m0.10   -> 0.2     urgent  message  [1]  01\033[0m\r\n")
+        self.assertEqual(self.on_a_terminal("-c", NO_COLOR="1"), plain)
+
+    def test_a_capture_is_not_for_a_terminal(self):
+        main_end, terminal = pty.openpty()
+        done = subprocess.run([CLI, "dump", "--pcap", BUS], stdout=terminal, stderr=subprocess.PIPE,
+                              text=True, timeout=GUARD)
+        os.close(terminal)
+        os.close(main_end)
+        self.assertEqual((done.returncode, done.stderr), (
+            2, "roio-cli: --pcap: expected into a file or a pipe, as what it writes is no text\n"))
+
+    def test_on_no_terminal_there_is_none(self):
+        dump = self.dump("-n", "1", "-c", BUS)
+        self.send("--urgent", BUS, "0.2", "01")
+        self.assertEqual(dump.result(), (0, "0.10   -> 0.2     urgent  message  [1]  01\n", ""))
 
 
 if __name__ == "__main__":

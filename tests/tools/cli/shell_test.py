@@ -16,7 +16,9 @@ def read(*path):
         return file.read()
 
 
-COMMANDS = ["send", "dump", "buses", "hub", "bridge show", "bridge set", "bridge identify", "bridge attach"]
+COMMANDS = ["send", "ask", "dump", "top", "record", "play", "gen", "buses", "hub", "attach", "bridge show",
+            "bridge set", "bridge identify", "bridge attach", "kind header", "kind js", "kind md", "robot dbc",
+            "robot check"]
 
 
 class SyncTest(CliTest):
@@ -40,7 +42,8 @@ class SyncTest(CliTest):
                 for part in flag.split(" , "):
                     words = part.replace("Fl Fl ", "--").replace("Fl ", "-").split()
                     described.add(words[0])
-            self.assertEqual(described - {"-v"}, self.options(command), command)
+            short = {"-v"} | ({"-o"} if "--output" in described else set())
+            self.assertEqual(described - short, self.options(command), command)
 
     def test_bash_offers_every_option(self):
         text = read("completions", "roio-cli.bash")
@@ -61,7 +64,8 @@ class SyncTest(CliTest):
     def test_fish_offers_every_option(self):
         text = read("completions", "roio-cli.fish")
         for command in COMMANDS:
-            of = (command.replace("bridge", "__roio_cli_bridge") if " " in command else
+            of = ("__roio_cli_" + command if " " in command else
+                  "__roio_cli_attach" if command == "attach" else
                   "__fish_seen_subcommand_from " + command)
             found = re.findall(rf"-n '{of}' (?:-s (\w) )?(?:-l ([\w-]+))?", text)
             offered = {"--" + long if long else "-" + short for short, long in found if short or long}
@@ -71,7 +75,7 @@ class SyncTest(CliTest):
 class ManualTest(CliTest):
     def test_pages_are_clean(self):
         pages = sorted(glob.glob(os.path.join(TOOL, "man", "*.1")))
-        self.assertEqual(len(pages), 6)
+        self.assertEqual(len(pages), 14)
         done = subprocess.run(
             ["mandoc", "-Tlint", "-Wwarning", *pages], capture_output=True, text=True, timeout=GUARD
         )
@@ -90,7 +94,8 @@ class CompletionTest(CliTest):
 
     # command line, what is offered: bash replaces what follows the last ':' or '='
     LINES = [
-        ("roio-cli ", ["--help", "--version", "bridge", "buses", "dump", "help", "hub", "send"]),
+        ("roio-cli ", ["--help", "--version", "ask", "attach", "bridge", "buses", "dump", "gen", "help", "hub",
+                       "kind", "play", "record", "robot", "send", "top"]),
         ("roio-cli d", ["dump"]),
         ("roio-cli send --cl", ["--class"]),
         ("roio-cli send --wait lo", ["local:robot"]),
@@ -98,20 +103,40 @@ class CompletionTest(CliTest):
         ("roio-cli hub ", ["local:robot"]),
         ("roio-cli hub --bit", ["--bitrate"]),
         ("roio-cli send --class s", ["stream", "system"]),
-        ("roio-cli dump -t ", ["a", "d", "z"]),
+        ("roio-cli dump -t ", ["A", "a", "d", "z"]),
         ("roio-cli dump -n 5 lo", ["local:robot"]),
         ("roio-cli dump local:r", ["local:robot"]),
         ("roio-cli send local:robot ", []),
         ("roio-cli dump local:robot u", ["urgent"]),
         ("roio-cli dump local:robot urgent class=s", ["class=stream", "class=system"]),
         ("roio-cli dump serial:a", ["serial:auto"]),
+        ("roio-cli dump -b lo", ["local:robot"]),
+        ("roio-cli record -o x.log lo", ["local:robot"]),
+        ("roio-cli record local:robot u", ["urgent"]),
+        ("roio-cli record --f", ["--force"]),
+        ("roio-cli play --speed ", ["max"]),
+        ("roio-cli play x.log lo", ["local:robot"]),
         ("roio-cli buses --j", ["--json"]),
         ("roio-cli bridge s", ["set", "show"]),
+        ("roio-cli kind ", ["--help", "header", "js", "md"]),
+        ("roio-cli kind js --ch", ["--check"]),
+        ("roio-cli robot d", ["dbc"]),
+        ("roio-cli robot dbc --o", ["--output"]),
         ("roio-cli bridge show a", ["auto"]),
         ("roio-cli bridge set --mode ", ["listen", "loopback", "normal"]),
         ("roio-cli bridge set --mode listen a", ["auto"]),
         ("roio-cli bridge set auto --addr", ["--address"]),
         ("roio-cli bridge attach auto ", ["local:robot"]),
+        ("roio-cli a", ["ask", "attach"]),
+        ("roio-cli ask --timeout 5 lo", ["local:robot"]),
+        ("roio-cli ask --class s", ["stream", "system"]),
+        ("roio-cli top --bitrate 500000 lo", ["local:robot"]),
+        ("roio-cli gen --to ", ["random"]),
+        ("roio-cli gen --se", ["--seed"]),
+        ("roio-cli gen --size 4-8 --to random --load 80% lo", ["local:robot"]),
+        ("roio-cli attach lo", ["local:robot"]),
+        ("roio-cli attach serial:auto lo", ["local:robot"]),
+        ("roio-cli attach --v", ["--verbose"]),
     ]
 
     def test_bash(self):

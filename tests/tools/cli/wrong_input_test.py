@@ -14,15 +14,17 @@ EMPTY = "; without DATA the message is empty"
 WORDS = ("expected to=SUBNET.NODE, from=SUBNET.NODE, urgent, normal, class=message|system|stream, "
          "ID:MASK, ID~MASK or the word or")
 
+COMMANDS = ("send, ask, dump, top, record, play, gen, buses, hub, "
+            "attach, bridge, kind, robot or help")
+
 # command line, the line on standard error
 WRONG = [
-    ("", "expected a command: send, dump, buses, hub, bridge or help; `roio-cli --help` shows how"),
-    ("snd local:x",
-     'unknown command "snd": expected send, dump, buses, hub, bridge or help; `roio-cli --help` shows how'),
+    ("", f"expected a command: {COMMANDS}; `roio-cli --help` shows how"),
+    ("snd local:x", f'unknown command "snd": expected {COMMANDS}; `roio-cli --help` shows how'),
     ("--foo", 'unknown option "--foo"; `roio-cli --help` shows how'),
     # send: what is missing
     ("send", "expected BUS, DEST and DATA" + SEND_HELP),
-    ("send local:x", "expected DEST after BUS: SUBNET.NODE, SUBNET.*, ID#DATA or -" + SEND_HELP),
+    ("send local:x", "expected DEST after BUS: a place, SUBNET.NODE, SUBNET.*, ID#DATA or -" + SEND_HELP),
     ("send local:x 0.2 --count", "--count: expected a value after it"),
     # send: the bus
     ("send local: 0.2",
@@ -114,7 +116,7 @@ WRONG = [
     ("dump --colour local:x", 'unknown option "--colour"' + DUMP_HELP),
     ("dump -n", "-n: expected a value after it"),
     ("dump -n 1 -n 2 local:x", "-n: given twice; expected once"),
-    ("dump -t local:x", '-t: expected a (absolute), d (delta) or z (zero), found "local:x"'),
+    ("dump -t local:x", '-t: expected a (absolute), A (with date), d (delta) or z (zero), found "local:x"'),
     ("dump -n local:x", '-n: expected a whole number 1..4294967295, found "local:x"'),
     ("dump --json=yes local:x", "--json: expected no value after it"),
     ("dump /dev/ttyACM0",
@@ -122,10 +124,18 @@ WRONG = [
      "serial port"),
     ("dump -n 0 local:x", '-n: expected a whole number 1..4294967295, found "0"'),
     ("dump -T soon local:x", '-T: expected a whole number 1..86400000, found "soon"'),
-    ("dump -t b local:x", '-t: expected a (absolute), d (delta) or z (zero), found "b"'),
+    ("dump -t b local:x", '-t: expected a (absolute), A (with date), d (delta) or z (zero), found "b"'),
     ("dump -t a --log local:x",
-     "-t: expected without --log and --json, which have a time of their own"),
+     "-t: expected without --log, which has a time of its own"),
+    ("dump -c --csv local:x", "-c: expected without --csv, which has no colours"),
     ("dump --json --log local:x", "expected either --log or --json, not both"),
+    ("dump --pcap --csv local:x", "expected either --csv or --pcap, not both"),
+    ("dump --pcap local:x local:y",
+     "--pcap: expected one BUS, as its form has no place for a bus's name"),
+    ("dump local:x local:y local:x", 'BUS "local:x": given twice; expected once'),
+    ("dump -b", "-b: expected a value after it"),
+    ("dump -b local:x urgnet", 'bad filter "urgnet": ' + WORDS),
+    ("dump local:x can0 ur/gent0", 'bad filter "ur/gent0": ' + WORDS),
     # dump: filters
     ("dump local:x urgnet", 'bad filter "urgnet": ' + WORDS),
     ("dump local:x to=0.2,urgent",
@@ -147,12 +157,107 @@ WRONG = [
     ("dump local:x or", 'bad filter "or": expected a filter on either side of it'),
     ("dump local:x urgent 1:C00007FF",
      'no frame can satisfy these filters together; put "or" between choices'),
+    # ask
+    ("ask", "expected BUS, DEST and DATA; `roio-cli ask --help` shows how"),
+    ("ask local:x", "expected DEST after BUS: a place, SUBNET.NODE or SUBNET.*; `roio-cli ask --help` shows how"),
+    ("ask local:x -", 'address "-": no dot; expected SUBNET.NODE, such as 0.2'),
+    ("ask local:x 123#11", 'address "123#11": no dot; expected SUBNET.NODE, such as 0.2'),
+    ("ask local:x 0.2 5A2", 'data "5A2": odd number of hex digits; expected two per byte'),
+    ("ask --dec local:x 0.2 256", 'DATA with --dec: expected a whole number 0..255, found "256"'),
+    ("ask --from 0.* local:x 0.2",
+     '--from: address "0.*": a broadcast is no address of a node\'s own; expected node 0..254'),
+    ("ask --timeout 0 local:x 0.2", '--timeout: expected a whole number 1..86400000, found "0"'),
+    ("ask --class fast local:x 0.2", '--class: expected message, system or stream, found "fast"'),
+    # top
+    ("top", "expected BUS; `roio-cli top --help` shows how"),
+    ("top --interval 9 local:x", '--interval: expected a whole number 10..86400000, found "9"'),
+    ("top --bitrate 999 local:x", '--bitrate: expected a whole number 1000..1000000, found "999"'),
+    ("top -n 0 local:x", '-n: expected a whole number 1..4294967295, found "0"'),
+    ("top local:x to=0.2", 'expected no more words, found "to=0.2"; `roio-cli top --help` shows how'),
+    # gen
+    ("gen", "expected BUS; `roio-cli gen --help` shows how"),
+    ("gen --size 3 local:x", "--size: 3 bytes are too short for a number; expected 4..8"),
+    ("gen --size 0-8 local:x", "--size: 0 bytes are too short for a number; expected 4..8"),
+    ("gen --size 9 local:x", '--size: expected a whole number 0..8, found "9"'),
+    ("gen --size 8-4 local:x", '--size: expected the shorter first, found "8-4"'),
+    ("gen --load 101% local:x", '--load: expected a whole number 1..100, found "101"'),
+    ("gen --load 0 local:x", '--load: expected a whole number 1..100, found "0"'),
+    ("gen --load 80% local:x", "--load: the bit rate of local:x is not known; expected --bitrate BPS"),
+    ("gen --load 80% --rate 5 local:x", "expected either --load or --rate, not both"),
+    ("gen --rate 0 local:x", '--rate: expected a whole number 1..1000000, found "0"'),
+    ("gen --id 128 local:x", '--id: expected a whole number 0..127, found "128"'),
+    ("gen --seed 4294967296 local:x", '--seed: expected a whole number 0..4294967295, found "4294967296"'),
+    ("gen --from all local:x", '--from: address "all": no dot; expected SUBNET.NODE, such as 0.2'),
+    ("gen --to 32.1 local:x", '--to: address "32.1": subnet 32 is out of range; expected 0..31'),
+    ("gen -T 5 local:x", "-T: expected with --check alone"),
+    ("gen -v local:x", "--verbose: expected with --check alone"),
+    ("gen --check --rate 5 local:x", "--rate: expected without --check, which takes what comes"),
+    ("gen --check --urgent local:x", "--urgent: expected without --check, which takes what comes"),
+    # attach
+    ("attach", "expected two buses; `roio-cli attach --help` shows how"),
+    ("attach local:x", "expected another BUS after the first; `roio-cli attach --help` shows how"),
+    ("attach local:x local:x", "local:x and local:x are one bus; expected two"),
+    ("attach local:x local:", 'bus "local:": a bus name of 0 bytes; expected 1..64, such as robot'),
+    ("attach local:x local:y local:z",
+     'expected no more words, found "local:z"; `roio-cli attach --help` shows how'),
+    # record
+    ("record", "expected BUS; `roio-cli record --help` shows how"),
+    ("record -o local:x", "expected BUS; `roio-cli record --help` shows how"),
+    ("record -o - local:x",
+     '-o: expected the name of a file, found "-"; `roio-cli dump --log` writes to standard output'),
+    ("record --json local:x", 'unknown option "--json"; `roio-cli record --help` shows how'),
+    ("record --csv --pcap local:x", "expected either --csv or --pcap, not both"),
+    ("record -o a.pcap local:x local:y",
+     "--pcap: expected one BUS, as its form has no place for a bus's name"),
+    ("record -n 0 local:x", '-n: expected a whole number 1..4294967295, found "0"'),
+    ("record local:x urgnet", 'bad filter "urgnet": ' + WORDS),
+    # play
+    ("play", "expected FILE and BUS; `roio-cli play --help` shows how"),
+    ("play a.log", "expected BUS after FILE, or BUS=NAME for an interface of the log; "
+                   "`roio-cli play --help` shows how"),
+    ("play --speed fast a.log local:x", '--speed: expected a number 0.001..1000 or max, found "fast"'),
+    ("play --speed 0 a.log local:x", '--speed: expected a number 0.001..1000 or max, found "0"'),
+    ("play --speed nan a.log local:x", '--speed: expected a number 0.001..1000 or max, found "nan"'),
+    ("play --speed 1e2 a.log local:x", '--speed: expected a number 0.001..1000 or max, found "1e2"'),
+    ("play --gap -1 a.log local:x", '--gap: expected a whole number 0..86400000, found "-1"'),
+    ("play --loop=x a.log local:x", '--loop: expected a whole number 0..4294967295, found "x"'),
+    ("play --from soon a.log local:x",
+     "--from: expected a time as the log has it, such as 1436509052.25, or +12.5 since its first frame, "
+     'found "soon"'),
+    ("play --loop - local:x", "--loop: expected a file, which can be read again, not standard input"),
+    ("play a.log local:x local:y",
+     'BUS "local:y": expected one BUS, or BUS=NAME for each interface of the log'),
+    ("play --wait a.log can0=can1",
+     "--wait: expected with local:NAME alone; on can0 nobody can tell who listens"),
     # help
     ("help snd",
-     'unknown command "snd": expected send, dump, buses, hub, bridge or help; `roio-cli --help` shows how'),
+     f'unknown command "snd": expected {COMMANDS}; `roio-cli --help` shows how'),
     ("help bridge shw",
      'unknown command "shw": expected show, set, identify or attach; `roio-cli bridge --help` shows '
      "how"),
+    # kind
+    ("kind", "expected a command: header, js or md; `roio-cli kind --help` shows how"),
+    ("kind hdr x.kind.json",
+     'unknown command "hdr": expected header, js or md; `roio-cli kind --help` shows how'),
+    ("help kind hdr",
+     'unknown command "hdr": expected header, js or md; `roio-cli kind --help` shows how'),
+    ("kind header",
+     "expected FILE, such as servo-arm.kind.json; `roio-cli kind header --help` shows how"),
+    ("kind js a.kind.json b.kind.json",
+     'expected no more words, found "b.kind.json"; `roio-cli kind js --help` shows how'),
+    ("kind md --types a.kind.json", 'unknown option "--types"; `roio-cli kind md --help` shows how'),
+    ("kind md --check a.kind.json", "--check: expected with -o OUT, the file to look at"),
+    ("kind md -o", "--output: expected a value after it"),
+    ("kind md -o '' a.kind.json", '-o: expected the name of a file, found ""'),
+    ("kind md -o a -o b a.kind.json", "--output: given twice; expected once"),
+    # robot
+    ("robot", "expected a command: dbc or check; `roio-cli robot --help` shows how"),
+    ("robot chk robot.json",
+     'unknown command "chk": expected dbc or check; `roio-cli robot --help` shows how'),
+    ("robot check", "expected FILE, such as robot.json; `roio-cli robot check --help` shows how"),
+    ("robot check -o out robot.json",
+     'unknown option "-o"; `roio-cli robot check --help` shows how'),
+    ("robot dbc --check robot.json", "--check: expected with -o OUT, the file to look at"),
     # buses
     ("buses -- can0", 'expected no more words, found "can0"; `roio-cli buses --help` shows how'),
     ("buses can0", 'expected no more words, found "can0"; `roio-cli buses --help` shows how'),
@@ -281,8 +386,10 @@ class InformationTest(CliTest):
         self.assertRegex(out, r"^roio-cli \d+\.\d+\.\d+\n$")
 
     def test_help_goes_to_standard_output_and_has_examples(self):
-        for command in ([], ["send"], ["dump"], ["buses"], ["bridge"], ["bridge", "show"],
-                        ["bridge", "set"], ["bridge", "identify"], ["bridge", "attach"]):
+        for command in ([], ["send"], ["ask"], ["dump"], ["top"], ["record"], ["play"], ["gen"], ["buses"],
+                        ["attach"], ["bridge"], ["bridge", "show"], ["bridge", "set"], ["bridge", "identify"],
+                        ["bridge", "attach"], ["kind"], ["kind", "header"], ["kind", "js"], ["kind", "md"],
+                        ["robot"], ["robot", "dbc"], ["robot", "check"]):
             for option in ("--help", "-h"):
                 status, out, err = self.run_cli(*command, option)
                 self.assertEqual((status, err), (0, ""))
@@ -292,7 +399,8 @@ class InformationTest(CliTest):
 
 
     def test_help_is_a_command_too(self):
-        for command in ([], ["send"], ["dump"], ["buses"], ["bridge"], ["bridge", "set"]):
+        for command in ([], ["send"], ["dump"], ["record"], ["play"], ["buses"], ["bridge"], ["bridge", "set"],
+                        ["kind"], ["robot", "dbc"]):
             self.assertEqual(self.run_cli("help", *command), self.run_cli(*command, "--help"))
 
 

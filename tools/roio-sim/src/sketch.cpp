@@ -17,6 +17,7 @@
 
 #include "interrupt.hpp"
 #include "program/exit_status.hpp"
+#include "program/share.hpp"
 
 namespace roio::sim_tool {
 namespace {
@@ -30,8 +31,7 @@ struct Kit {
 };
 
 Kit find_kit() {
-  const auto program = std::filesystem::read_symlink("/proc/self/exe");
-  const auto share = program.parent_path().parent_path() / "share" / "roio";
+  const auto share = cli::share_folder();
   Kit kit{share / "arduino_image.py", share / "Roio-" ROIO_VERSION ".zip"};
   for (const auto& file : {kit.script, kit.library}) {
     if (!std::filesystem::exists(file)) {

@@ -22,7 +22,7 @@
 // one the node runs at another bit rate than its bus, though begin() says ok.
 constexpr uint32_t crystal = 16000000;
 constexpr uint32_t bitrate = 500000;
-constexpr Roio::Address own = {0, 2};
+constexpr Roio::FixedAddress<0, 2> own{};
 
 RoioOn<10> roio;  // CS
 Roio::Message message;

@@ -21,6 +21,8 @@
 */
 #include <Roio.h>
 
+#include "sensor_board.h"  // what its message holds, made from kinds/sensor-board.kind.json
+
 // As printed on the module's crystal: 8.000, on the usual blue module, is 8000000. With the wrong
 // one the node runs at another bit rate than its bus, though begin() says ok.
 constexpr uint32_t crystal = 16000000;
@@ -87,8 +89,12 @@ bool hasChanged() {
 }
 
 bool tell() {
-  const uint8_t bytes[] = {now.light,   now.clicks[0], now.clicks[1],
-                           now.pots[0], now.pots[1],   now.pots[2]};
+  const sensor_board::said::Values values = {now.light,   now.clicks[0], now.clicks[1],
+                                             now.pots[0], now.pots[1],   now.pots[2]};
+  uint8_t bytes[sensor_board::said::values::length];
+  if (!pack(values, bytes)) {
+    return false;
+  }
   return roio.send(Roio::Message(listener, bytes, sizeof bytes)) == Roio::Status::ok;
 }
 

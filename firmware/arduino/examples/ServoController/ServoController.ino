@@ -23,6 +23,7 @@
 */
 #include <Roio.h>
 
+#include "servo_arm.h"   // what its messages hold, made from kinds/servo-arm.kind.json
 #include "TimerServo.h"  // without an AVR: #include <Servo.h>, and Servo in place of TimerServo
 
 // As printed on the module's crystal: 8.000, on the usual blue module, is 8000000. With the wrong
@@ -34,35 +35,39 @@ constexpr Roio::Address own = {0, 2};
 constexpr uint8_t servoCount = 3;
 constexpr uint8_t servoPins[servoCount] = {3, 5, 6};
 constexpr uint8_t startAngle = 45;
-constexpr uint8_t largestAngle = 180;
 
 RoioOn<10> roio;  // CS
 TimerServo servos[servoCount];
 uint16_t refused = 0;
 
-// All or none: half an order could move the arm where nobody wanted it.
-bool move(const Roio::Message& message) {
-  if (message.length() != servoCount) {
-    return false;
+void move(const servo_arm::heard::Angles& angles) {
+  const uint8_t degrees[servoCount] = {angles.shoulder, angles.elbow, angles.hand};
+  uint8_t i = 0;
+  for (TimerServo& servo : servos) {
+    servo.write(degrees[i++]);
   }
-  for (uint8_t i = 0; i < servoCount; ++i) {
-    if (message[i] > largestAngle) {
-      return false;
-    }
-  }
-  for (uint8_t i = 0; i < servoCount; ++i) {
-    servos[i].write(message[i]);
-  }
-  return true;
 }
 
 bool tellRefused(Roio::Address asker) {
-  const uint8_t answer[] = {highByte(refused), lowByte(refused)};
+  uint8_t answer[servo_arm::said::refusals::length];
+  if (!pack(servo_arm::said::Refusals{refused}, answer)) {
+    return false;
+  }
   return roio.send(Roio::Message(asker, answer, sizeof answer)) == Roio::Status::ok;
 }
 
 bool obey(const Roio::Message& message) {
-  return message.length() == 0 ? tellRefused(message.source()) : move(message);
+  servo_arm::heard::Refusals question;
+  if (unpack(message, question)) {
+    return tellRefused(message.source());
+  }
+  servo_arm::heard::Angles angles;
+  // All or none: half an order could move the arm where nobody wanted it.
+  if (!unpack(message, angles)) {
+    return false;
+  }
+  move(angles);
+  return true;
 }
 
 void setup() {

@@ -26,6 +26,14 @@ struct ArduinoOptions {
   static constexpr bool every_frame = false;
 };
 
+/// An address that its own type knows: begin() of a node that has one makes what the chip is to be
+/// told when it is compiled. One that cannot be does not compile.
+template <uint8_t Subnet, uint8_t Node>
+struct FixedAddress : Address {
+  static_assert(is_valid_source(Address{Subnet, Node}), "expected subnet 0..31 and node 0..254");
+  constexpr FixedAddress() : Address{Subnet, Node} {}
+};
+
 /// @tparam Port an ArduinoPort.
 template <typename Port, typename Options>
 class ArduinoNode {
@@ -45,6 +53,8 @@ class ArduinoNode {
  public:
   // In a sketch everything has its name from here, since `roio` is what a sketch calls its node.
   using Address = roio::Address;
+  template <uint8_t Subnet, uint8_t Node>
+  using FixedAddress = roio::FixedAddress<Subnet, Node>;
   using BitTiming = roio::BitTiming;
   using Counters = typename Driver::Counters;
   using Frame = roio::Frame;
@@ -85,6 +95,16 @@ class ArduinoNode {
     take_address(own);
     return driver_.start(
         PlainSetup<cnf>(mcp2515_filters_of(own), mcp2515::Control::of(mode, false)));
+  }
+  /// The same, smaller: constexpr Roio::FixedAddress<0, 2> own{};
+  template <uint32_t OscHz, uint32_t BitrateBps, uint8_t Subnet, uint8_t Node>
+  ROIO_IN_LINE Status begin(FixedAddress<Subnet, Node> own, Mode mode = Mode::normal) {
+    constexpr uint32_t cnf = mcp2515::Cnf::word(bit_timing<OscHz, BitrateBps>());
+    if (mcp2515::is_rest(mode)) {
+      return Status::bad_argument;
+    }
+    take_address(own);
+    return driver_.start(FixedSetup<cnf, Subnet, Node>(mcp2515::Control::of(mode, false)));
   }
   /// With a bit timing of one's own.
   /// @return ok; bad_argument: no valid address (subnet 0..31, node 0..254), or a mode that rests;
@@ -138,14 +158,12 @@ class ArduinoNode {
   /// @param message its source becomes this node, also when it was not sent.
   /// @return ok: it will be sent; full: try again after the next poll() or receive();
   ///         bad_argument: subnet above 31, length above 8; no_chip; wrong_mode: listening only.
-  ROIO_NODISCARD Status send(Message& message) {
-    if (!mcp2515::can_be_sent(message.frame())) {
-      return Status::bad_argument;
-    }
-    mcp2515::put_source(own_, message.frame());
-    return driver_.send(message.frame());
+  ROIO_NODISCARD ROIO_IN_LINE Status send(Message& message) {
+    // In line, or one and the same driver has two addresses for a compiler, and is told to
+    // functions that would know it.
+    return prepare(message.frame()) ? driver_.send(message.frame()) : Status::bad_argument;
   }
-  ROIO_NODISCARD Status send(Message&& message) { return send(message); }
+  ROIO_NODISCARD ROIO_IN_LINE Status send(Message&& message) { return send(message); }
 
   /// Any frame as it is on the bus, with Options::every_frame.
   ROIO_NODISCARD Status receive(Frame& frame) { return driver_.receive(frame); }
@@ -221,6 +239,11 @@ class ArduinoNode {
   }
 
  private:
+  /// @return whether it can be sent.
+  bool prepare(Mcp2515Frame& frame) const {
+    mcp2515::put_source(own_, frame);
+    return mcp2515::can_be_sent(frame);
+  }
   // Chosen among numbers, which a compiler sees through.
   static ROIO_IN_LINE uint32_t original_cnf(uint16_t kbps) {
     constexpr uint32_t at_1000 = mcp2515::Cnf::word(original_bit_timing(1000));

@@ -49,7 +49,8 @@ class SetPin {
   uint8_t number_;
 };
 
-inline void begin_spi() {
+template <typename ChipSelect>
+void begin_spi() {
   SPI.begin();
 }
 /// Interrupts are off while one lives, and on again after it if they were on before, where the core

@@ -61,11 +61,22 @@ struct AvrPinBit {
   bool is_low() const { return (port[-2] & mask) == 0; }
 };
 
+#if defined(ROIO_AVR_SPI_SS)
+constexpr bool is_spi_ss(AvrPinPlace place) {
+  return place.port == avr_ports::b && place.bit == ROIO_AVR_SPI_SS;
+}
+#else
+constexpr bool is_spi_ss(AvrPinPlace) {
+  return false;
+}
+#endif
+
 /// A pin that the board's map has: one instruction, which nothing can interrupt.
 template <uint8_t Number, bool IsMapped = avr_pin_place(Number).is_reachable()>
 class FixedPin {
  public:
   static constexpr bool is_used = true;
+  static constexpr bool is_ss = is_spi_ss(avr_pin_place(Number));
 
   static void begin_output_high() {
     port<0>() |= mask;
@@ -94,6 +105,7 @@ template <uint8_t Number>
 class FixedPin<Number, false> {
  public:
   static constexpr bool is_used = true;
+  static constexpr bool is_ss = false;  // as far as is known
 
   static void begin_output_high() { place().begin_output_high(); }
   static void begin_input() { place().begin_input(); }
@@ -111,6 +123,7 @@ class FixedPin<Number, false> {
 /// A pin that is looked up once.
 class SetPin {
  public:
+  static constexpr bool is_ss = false;  // not known when compiling
   explicit constexpr SetPin(uint8_t number) : number_(number), place_{nullptr, 0} {}
 
   uint8_t number() const { return number_; }
@@ -130,13 +143,17 @@ class SetPin {
 
 /// What SPI.begin() does, without looking up pins that the processor has fixed; each transaction
 /// switches SPI on by itself. SS has to be an output, or SPI may become a slave.
-inline void begin_spi() {
+/// @tparam ChipSelect an output by now, and most often that very pin.
+template <typename ChipSelect>
+void begin_spi() {
 #if defined(ROIO_AVR_SPI_SS)
-  if ((DDRB & (1U << ROIO_AVR_SPI_SS)) == 0) {
-    PORTB |= 1U << ROIO_AVR_SPI_SS;
-  }
   // One bit at a time: that is one instruction, and no interrupt comes between.
-  DDRB |= 1U << ROIO_AVR_SPI_SS;
+  if (!ChipSelect::is_ss) {
+    if ((DDRB & (1U << ROIO_AVR_SPI_SS)) == 0) {
+      PORTB |= 1U << ROIO_AVR_SPI_SS;
+    }
+    DDRB |= 1U << ROIO_AVR_SPI_SS;
+  }
   DDRB |= 1U << ROIO_AVR_SPI_MOSI;
   DDRB |= 1U << ROIO_AVR_SPI_SCK;
 #else

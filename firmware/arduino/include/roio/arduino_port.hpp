@@ -56,13 +56,13 @@ class ArduinoPort {
   void begin() {
     chip_select_.begin_output_high();
     Interrupt::begin_input();
-    begin_spi();
+    begin_spi<ChipSelect>();
   }
 
   const ChipSelect& chip_select() const { return chip_select_; }
 
   bool interrupt_line_is_low() { return Interrupt::is_low(); }
-  void pause(uint16_t microseconds) { delayMicroseconds(microseconds); }
+  ROIO_OUT_OF_LINE void pause(uint16_t microseconds) { delayMicroseconds(microseconds); }
   uint32_t microseconds() { return micros(); }
 
   class Transaction {
@@ -92,13 +92,10 @@ class ArduinoPort {
       is_sending_ = false;
       return spi_exchange(byte);
     }
-    ROIO_IN_LINE void receive(uint8_t* bytes, uint8_t count) {
-      if (is_sending_) {
-        spi_receive(bytes, count);
-      } else {
-        spi_receive_more(bytes, count);
-      }
+    ROIO_IN_LINE uint8_t* receive(uint8_t* bytes, uint8_t count) {
+      const bool was_sending = is_sending_;
       is_sending_ = false;
+      return was_sending ? spi_receive(bytes, count) : spi_receive_more(bytes, count);
     }
     ROIO_IN_LINE void release() {
       if (is_sending_) {

@@ -22,13 +22,14 @@ inline void spi_send(const uint8_t* bytes, uint8_t count) {
 inline uint8_t spi_exchange(uint8_t byte) {
   return SPI.transfer(byte);
 }
-inline void spi_receive(uint8_t* bytes, uint8_t count) {
+inline uint8_t* spi_receive(uint8_t* bytes, uint8_t count) {
   while (count-- != 0) {
     *bytes++ = SPI.transfer(0);
   }
+  return bytes;
 }
-inline void spi_receive_more(uint8_t* bytes, uint8_t count) {
-  spi_receive(bytes, count);
+inline uint8_t* spi_receive_more(uint8_t* bytes, uint8_t count) {
+  return spi_receive(bytes, count);
 }
 inline void spi_finish() {}
 

@@ -15,7 +15,8 @@
 namespace roio {
 
 /// What the functions below call, in one piece because they share it. Each entry may come as soon
-/// as 8 cycles after the write to SPDR of the byte that is under way: RET takes 4 and RCALL 3.
+/// as 8 cycles after the write to SPDR of the byte that is under way: RET takes 4 and RCALL 3. LPM
+/// is there for its 3 cycles in one word; what it reads, into r0, nobody wants.
 __attribute__((naked, noinline)) inline void spi_by_counting() {
   __asm__ volatile(
       // r24: the byte.
@@ -33,51 +34,41 @@ __attribute__((naked, noinline)) inline void spi_by_counting() {
       "  out %[spdr], __tmp_reg__\n"
       "  dec r24\n"
       "  breq 9f\n"
-      "  rjmp .+0\n"  // 2
-      "  nop\n"
+      "  lpm\n"
       "  rjmp 1b\n"
+      "8: lpm\n"
       "9: ret\n"
-      // X: to where. r24: how many; then the last one.
+      // X: to where, then what is behind. r24: how many.
       ".weak roio_spi_receive\n"
       "roio_spi_receive:\n"
-      "  rcall 9b\n"
-      "  rjmp .+0\n"
-      "  nop\n"
+      "  rcall 8b\n"  // 10
       // The same, with nothing under way.
       ".weak roio_spi_receive_more\n"
       "roio_spi_receive_more:\n"
       "  out %[spdr], __zero_reg__\n"
+      "  rjmp .+0\n"  // 2
       "  rjmp .+0\n"
-      "  rjmp .+0\n"
-      "3: rcall 9b\n"
+      "3: rcall 8b\n"
       "  dec r24\n"
       "  breq 5f\n"
-      "  rjmp .+0\n"
-      "  nop\n"
       // In this order: an interrupt between the two may take longer than a byte.
       "  in __tmp_reg__, %[spdr]\n"
       "  out %[spdr], __zero_reg__\n"
       "  st X+, __tmp_reg__\n"
       "  rjmp 3b\n"
-      "5: rjmp .+0\n"
-      "  nop\n"
-      "  in __tmp_reg__, %[spsr]\n"
+      "5: in __tmp_reg__, %[spsr]\n"
       "  in r24, %[spdr]\n"
-      "  st X, r24\n"
+      "  st X+, r24\n"
       "  ret\n"
       // r24: the byte; then the answer.
       ".weak roio_spi_exchange\n"
       "roio_spi_exchange:\n"
-      "  rcall 9b\n"
-      "  rjmp .+0\n"
-      "  nop\n"
+      "  rcall 8b\n"
       "  out %[spdr], r24\n"
       "  rcall 9b\n"
       ".weak roio_spi_finish\n"
       "roio_spi_finish:\n"
-      "  rcall 9b\n"
-      "  rjmp .+0\n"
-      "  nop\n"
+      "  rcall 8b\n"
       "  in __tmp_reg__, %[spsr]\n"
       "  in r24, %[spdr]\n"
       "  ret\n"
@@ -109,22 +100,24 @@ inline __attribute__((always_inline)) uint8_t spi_exchange(uint8_t byte) {
 }
 
 /// @param count 1 or more.
-inline __attribute__((always_inline)) void spi_receive(uint8_t* bytes, uint8_t count) {
+/// @return what is behind them.
+inline __attribute__((always_inline)) uint8_t* spi_receive(uint8_t* bytes, uint8_t count) {
   register uint8_t left __asm__("r24") = count;
   __asm__ volatile("%~call roio_spi_receive"
                    : "+x"(bytes), "+r"(left)
                    : "i"(spi_by_counting)
                    : "r0", "memory");
+  return bytes;
 }
 
-/// With nothing under way.
-/// @param count 1 or more.
-inline __attribute__((always_inline)) void spi_receive_more(uint8_t* bytes, uint8_t count) {
+/// The same with nothing under way.
+inline __attribute__((always_inline)) uint8_t* spi_receive_more(uint8_t* bytes, uint8_t count) {
   register uint8_t left __asm__("r24") = count;
   __asm__ volatile("%~call roio_spi_receive_more"
                    : "+x"(bytes), "+r"(left)
                    : "i"(spi_by_counting)
                    : "r0", "memory");
+  return bytes;
 }
 
 inline __attribute__((always_inline)) void spi_finish() {

@@ -70,7 +70,7 @@ namespace roio {
 //       void put(uint8_t byte);                          // sends one
 //       void send(const uint8_t* bytes, uint8_t count);  // 1 or more
 //       uint8_t exchange(uint8_t byte);                  // the same, and receives one
-//       void receive(uint8_t* bytes, uint8_t count);     // 1 or more
+//       uint8_t* receive(uint8_t* bytes, uint8_t count); // 1 or more; returns what is behind them
 //       void release();                // chip select high, early
 //       void restart(uint8_t first);   // after that: low again, and a first byte
 //       ~Transaction();
@@ -237,8 +237,8 @@ class Mcp2515 {
 
   /// How many frames are in the chip to be sent, as far as was last seen.
   uint8_t in_flight() const {
-    return static_cast<uint8_t>(((status_ >> 2) & 1U) + ((status_ >> 4) & 1U) +
-                                ((status_ >> 6) & 1U));
+    // Bits 2, 4 and 6: times 40h, 10h and 4 each comes to bit 8, and there they add up.
+    return static_cast<uint8_t>((requested() * 0x54U) >> 8) & 3U;
   }
   /// How many received frames receive() has without looking at the chip.
   uint8_t fetched() const { return rx_queue().size(); }
@@ -337,8 +337,12 @@ class Mcp2515 {
   static Mcp2515State state_of(uint8_t error_flags);
 
   // the chip's registers
-  uint8_t read_register(Register address);
-  void write_register(Register address, uint8_t value);
+  // Arguments in one order, so that a call from one to the other moves none.
+  ROIO_MCP2515_OUT_OF_LINE uint8_t access_register(Register address, uint8_t value,
+                                                   Instruction instruction);
+  ROIO_MCP2515_OUT_OF_LINE uint8_t read_register(Register address);
+  ROIO_MCP2515_OUT_OF_LINE void write_register(Register address, uint8_t value);
+  ROIO_MCP2515_OUT_OF_LINE uint8_t mode_differs_from(uint8_t control);
   void modify_register(Register address, uint8_t mask, uint8_t value);
   ROIO_MCP2515_IN_LINE uint8_t read_quick_status() {
     Transaction transaction(port(), static_cast<uint8_t>(Instruction::read_status));
@@ -355,7 +359,7 @@ class Mcp2515 {
 
   // starting
   bool enters(uint8_t control);
-  bool reach(uint8_t control);
+  ROIO_MCP2515_OUT_OF_LINE uint8_t reach(uint8_t control);
   template <typename Setup>
   bool configure(const Setup& setup);
   bool reset_chip();
@@ -364,10 +368,10 @@ class Mcp2515 {
   uint32_t time_clock_frames(uint32_t limit_us);
 
   // what READ STATUS shows
-  bool is_plausible(uint8_t quick);
+  uint8_t nonsense_in(uint8_t quick) const;
   ROIO_MCP2515_OUT_OF_LINE void look();
-  ROIO_MCP2515_OUT_OF_LINE bool take_in(uint8_t quick);
-  ROIO_MCP2515_OUT_OF_LINE bool take_in_everything();
+  ROIO_MCP2515_OUT_OF_LINE uint8_t take_in(uint8_t quick);
+  ROIO_MCP2515_OUT_OF_LINE uint8_t look_once();
 
   // the interrupt line
   Line& line() { return parts_; }
@@ -408,7 +412,7 @@ class Mcp2515 {
   void check_soon();
   void check_chip();
   bool diagnose(uint8_t errors);
-  void lose_chip();
+  ROIO_MCP2515_OUT_OF_LINE void lose_chip();
   ROIO_MCP2515_OUT_OF_LINE void forget_chip();
 
   Parts parts_;

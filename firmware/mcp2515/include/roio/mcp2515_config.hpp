@@ -34,25 +34,27 @@ class Mcp2515Config {
                mcp2515_register(second, 2),     mcp2515_register(second, 3),
                mcp2515_register(mask, 0),       mcp2515_register(mask, 1),
                mcp2515_register(mask, 2),       mcp2515_register(mask, 3),
+               mcp2515_register(mask, 0),       mcp2515_register(mask, 1),
+               mcp2515_register(mask, 2),       mcp2515_register(mask, 3),
                static_cast<uint8_t>(cnf),       static_cast<uint8_t>(cnf >> 8),
-               static_cast<uint8_t>(cnf >> 16), 0},
+               static_cast<uint8_t>(cnf >> 16), 0,
+               mcp2515::Interrupt::tx_any},
         control_(control) {}
 
-  bool timing_is_valid() const { return bytes_[13] != 0; }
+  bool timing_is_valid() const { return bytes_[17] != 0; }
   /// CANCTRL.
   uint8_t control() const { return control_; }
   /// Of the oscillator: 10..3200.
-  uint16_t clocks_per_bit() const { return mcp2515::Cnf::clocks_per_bit(bytes_ + 12); }
-  /// What the registers 00h..0Bh, 10h..1Bh and 20h..2Bh have to be: three filters, three filters,
-  /// two masks and CNF3, CNF2, CNF1, CANINTE (0 at first). RXB1 has the filters of RXB0, so that
-  /// what goes there went past RXB0 while it was full.
+  uint16_t clocks_per_bit() const { return mcp2515::Cnf::clocks_per_bit(bytes_ + 16); }
+  /// What the registers 00h..0Bh, 10h..1Bh and 20h..2Ch have to be: three filters, three filters,
+  /// two masks and CNF3, CNF2, CNF1, CANINTE (0 at first), CANINTF (the three TXnIF). RXB1 has the
+  /// filters of RXB0, so that what goes there went past RXB0 while it was full.
   uint8_t operator[](uint8_t address) const {
-    const uint8_t place = (address & 0x20U) == 0 ? address & 7U : 8U | ((address >> 1) & 4U);
-    return bytes_[place | (address & 3U)];
+    return bytes_[(address & 0x20U) == 0 ? address & 7U : address - 0x18U];
   }
 
  private:
-  uint8_t bytes_[16];
+  uint8_t bytes_[21];
   uint8_t control_;
 };
 

@@ -42,11 +42,11 @@ struct Mcp2515Frame {
   uint8_t length() const { return bytes[4] & length_mask; }
   /// A DLC of 9 to 15 means 8 (ISO 11898-1), and what bits 5 and 4 hold is nobody's business.
   void limit_length() {
-    uint8_t dlc = bytes[4] & (remote_bit | length_mask);
+    uint8_t dlc = bytes[4];
     if ((dlc & max_data_length) != 0) {
-      dlc &= remote_bit | max_data_length;
+      dlc &= static_cast<uint8_t>(~(max_data_length - 1U));  // 9 to 15
     }
-    bytes[4] = dlc;
+    bytes[4] = dlc & (remote_bit | length_mask);
   }
 };
 
@@ -113,15 +113,12 @@ inline bool is_message(const Mcp2515Frame& frame) {
 /// can_be_sent() refuses it.
 inline void put_destination(Address destination, Mcp2515Frame& frame) {
   const uint8_t subnet = destination.subnet <= max_subnet ? destination.subnet : class_bits;
-  // Three times by itself, or an AVR shifts 16 bits in a loop.
-  uint8_t middle = destination.node / 2U;
-  middle /= 2U;
-  middle /= 2U;
+  // Moved by 5 bits: what byte 1 has at its end, and what byte 2 begins with.
+  const uint16_t wide = static_cast<uint16_t>(destination.node * 32U);
   frame.bytes[0] = static_cast<uint8_t>((frame.bytes[0] & priority_bit) | subnet);
-  frame.bytes[1] =
-      static_cast<uint8_t>((destination.node & 0xE0U) | Mcp2515Frame::extended_bit | (middle & 3U));
-  const uint8_t low = static_cast<uint8_t>(destination.node << 5);
-  frame.bytes[2] = static_cast<uint8_t>((frame.bytes[2] & max_subnet) | low);
+  frame.bytes[1] = static_cast<uint8_t>((destination.node & 0xE0U) | Mcp2515Frame::extended_bit |
+                                        ((wide >> 8) & 3U));
+  frame.bytes[2] = static_cast<uint8_t>((frame.bytes[2] & max_subnet) | static_cast<uint8_t>(wide));
 }
 inline void put_source(Address source, Mcp2515Frame& frame) {
   frame.bytes[2] = static_cast<uint8_t>((frame.bytes[2] & 0xE0U) | source.subnet);

@@ -23,7 +23,9 @@ ROIO_MCP2515_MEMBER(Status)::change_mode(mcp2515::Mode mode) {
   if (before == Mode::asleep) {
     end_sleep();
   }
-  look();
+  if (running()) {
+    look();
+  }
   if (!running()) {
     control_ = 0;
     return Status::no_chip;

@@ -50,11 +50,11 @@ ROIO_MCP2515_MEMBER(bool)::read_rx_buffer(bool first, Mcp2515Frame& frame) {
   uint8_t quick = 0;
   {
     Transaction transaction(port(), mcp2515::read_rx(first));
-    transaction.receive(frame.bytes, Mcp2515Frame::head_length);
+    uint8_t* const data = transaction.receive(frame.bytes, Mcp2515Frame::head_length);
     frame.limit_length();
     // Only as many as the frame has.
     if (frame.length() != 0) {
-      transaction.receive(frame.data(), frame.length());
+      transaction.receive(data, frame.length());
     }
     called = polls || port().interrupt_line_is_low();
     typename Port::Uninterrupted together(port());
@@ -71,7 +71,7 @@ ROIO_MCP2515_MEMBER(bool)::read_rx_buffer(bool first, Mcp2515Frame& frame) {
       status_ |= QuickStatus::rx1;  // if it is full now, it has the older frame
     }
     // Once only: the order follows from this very look, and that the buffer was freed.
-    if (!take_in(quick)) {
+    if (take_in(quick) != 0) {
       lose_chip();
       count(counters_.discarded);
       return false;
@@ -112,9 +112,13 @@ ROIO_MCP2515_MEMBER(Status)::receive(Mcp2515Frame& frame) {
   if (RxQueue == 0) {
     bool looked = look_for_frame();
     // As many as the chip holds, so that frames for others keep nobody here.
-    for (uint8_t tries = 2; tries != 0 && !is_one && received() != 0; --tries) {
-      is_one = fetch(frame);
+    uint8_t tries = 2;
+    while (received() != 0) {
       looked = true;
+      is_one = fetch(frame);
+      if (is_one || --tries == 0) {
+        break;
+      }
     }
     // Without a line it has looked by now, in one way or the other.
     tend(looked || !Port::has_interrupt_line);

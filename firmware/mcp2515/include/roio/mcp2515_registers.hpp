@@ -13,8 +13,8 @@ namespace mcp2515 {
 /// SPI instructions (table 12-1).
 enum class Instruction : uint8_t {
   reset = 0xC0,
-  read = 0x03,
   write = 0x02,
+  read = 0x03,  ///< The next one.
   bit_modify = 0x05,
   read_status = 0xA0,
   load_tx_buffer = 0x40,   ///< | load_tx()
@@ -63,7 +63,8 @@ struct QuickStatus {
   static constexpr uint8_t rx0 = 0x01;
   static constexpr uint8_t rx1 = 0x02;
   static constexpr uint8_t any_rx = rx0 | rx1;
-  static constexpr uint8_t everything = 0xFF;
+  /// From here on: all buffers are in use, but perhaps RXB0.
+  static constexpr uint8_t all_in_use = 0xFE;
   static constexpr uint8_t tx0if = 0x08;
   static constexpr uint8_t txif = tx0if | 0x20 | 0x80;
   static constexpr uint8_t any_txreq = 0x04 | 0x10 | 0x40;
@@ -130,6 +131,8 @@ constexpr uint8_t pins_show_buffers = 0x0F;
 /// CANCTRL (register 10-1) and the mode field that CANSTAT shares with it.
 struct Control {
   static constexpr uint8_t mode_mask = 0xE0;
+  /// Of the modes in which the chip does not rest, listen_only alone has it.
+  static constexpr uint8_t only_listens = 0x20;
   static constexpr uint8_t abort_all = 0x10;
   static constexpr uint8_t one_shot = 0x08;
   /// CLKEN and CLKPRE as a reset leaves them. Not 0, so that a line stuck at 0 is noticed.

@@ -23,8 +23,7 @@ ROIO_MCP2515_MEMBER(Status)::send(const Mcp2515Frame& frame, uint8_t token) {
   if (!running()) {
     return Status::no_chip;
   }
-  if ((control_ & mcp2515::Control::mode_mask) ==
-      static_cast<uint8_t>(mcp2515::Mode::listen_only)) {
+  if ((control_ & mcp2515::Control::only_listens) != 0) {
     return Status::wrong_mode;
   }
   return give_to_chip(frame, token) ? Status::ok : enqueue(frame, token);
@@ -72,7 +71,9 @@ ROIO_MCP2515_MEMBER(bool)::load(const Mcp2515Frame& frame, uint8_t token) {
   if (buffer == mcp2515::no_buffer) {
     return false;
   }
-  const uint8_t length = Traits::all_kinds && frame.is_remote() ? uint8_t{0} : frame.length();
+  const uint8_t length = !Traits::all_kinds  ? frame.bytes[4]  // that and no more
+                         : frame.is_remote() ? uint8_t{0}
+                                             : frame.length();
   {
     // With back_to_back from TXBnCTRL on, which is in front of the frame.
     Transaction transaction(port(), Traits::back_to_back ? static_cast<uint8_t>(Instruction::write)

@@ -8,10 +8,11 @@
 namespace roio {
 
 namespace mcp2515 {
-// The registers 00h..0Bh, 10h..1Bh and 20h..2Bh.
-constexpr uint8_t setup_block = 12;
-constexpr uint8_t setup_gap = 4;
 constexpr uint8_t setup_end = 0x30;
+/// Whether it is behind the registers of a block: 00h..0Bh, 10h..1Bh and 20h..2Ch.
+constexpr bool ends_setup_block(uint8_t address) {
+  return (address & 0x2FU) == 0x0C || address == 0x2D;
+}
 
 /// Sent from the chip to itself to time its oscillator; no five equal bits up to the CRC.
 constexpr uint32_t clock_frame_id = UINT32_C(0x0AAAAAAA);
@@ -37,37 +38,42 @@ ROIO_MCP2515_MEMBER(bool)::enters(uint8_t control) {
     write_register(Register::canctrl, control);
   }
   port().pause(mcp2515::pause_us);
-  return ((read_register(Register::canstat) ^ control) & Control::mode_mask) == 0;
+  return mode_differs_from(control) == 0;
 }
 
-ROIO_MCP2515_MEMBER(bool)::reach(uint8_t control) {
-  bool is_there = false;
-  for (uint8_t left = mcp2515::pauses; !is_there && left != 0; --left) {
-    is_there = enters(control);
+/// The same, as often as it takes.
+/// @return how many tries were left; 0: it is not there.
+ROIO_MCP2515_MEMBER(uint8_t)::reach(uint8_t control) {
+  uint8_t left = mcp2515::pauses;
+  while (!enters(control) && --left != 0) {
   }
-  return is_there;
+  return left;
 }
 
-/// Writes filters, masks and timing, and reads them back.
+/// Writes filters, masks, timing and interrupt flags, and reads them back. The three TXnIF are set
+/// there and never cleared, so that every READ STATUS shows whether the chip still knows what it
+/// was told.
 /// @return whether all are as they have to be.
 ROIO_MCP2515_MEMBER_OF(Setup, bool)::exchange_setup(const Setup& setup) {
-  Instruction instruction = Instruction::write;
-  for (;;) {
-    uint8_t differences = 0;  // what a chip that is written to answers is nothing
+  constexpr uint8_t writing = static_cast<uint8_t>(Instruction::write);
+  constexpr uint8_t reading = static_cast<uint8_t>(Instruction::read);
+  static_assert(reading == writing + 1, "first it is written, then it is read");
+  uint8_t differences = 0;
+  for (uint8_t instruction = writing; instruction != reading + 1; ++instruction) {
+    differences = 0;  // what a chip that is written to answers is nothing
     uint8_t address = 0;
     do {
-      RegisterAccess access(port(), instruction, static_cast<Register>(address));
-      for (uint8_t left = mcp2515::setup_block; left != 0; --left) {
-        const uint8_t byte = setup[address++];
+      RegisterAccess access(port(), static_cast<Instruction>(instruction),
+                            static_cast<Register>(address));
+      do {
+        const uint8_t byte = setup[address];
         differences |= static_cast<uint8_t>(access.exchange(byte) ^ byte);
-      }
-      address = static_cast<uint8_t>(address + mcp2515::setup_gap);
+        ++address;
+      } while (!mcp2515::ends_setup_block(address));
+      address = static_cast<uint8_t>((address | 0x0FU) + 1U);  // of the next block
     } while (address != mcp2515::setup_end);
-    if (instruction == Instruction::read) {
-      return differences == 0;
-    }
-    instruction = Instruction::read;
   }
+  return differences == 0;
 }
 
 /// Writes what the registers have to be, and reads it back.
@@ -93,16 +99,13 @@ ROIO_MCP2515_MEMBER_OF(Setup, bool)::configure(const Setup& setup) {
       return false;
     }
   }
-  // The three TXnIF are set and never cleared, so that every READ STATUS shows whether the chip
-  // still knows what it was told.
-  write_register(Register::canintf, Interrupt::tx_any);
-  return read_quick_status() == QuickStatus::txif;
+  return true;
 }
 
 /// @return whether the chip is there, and in configuration mode.
 ROIO_MCP2515_MEMBER(bool)::reset_chip() {
   forget_chip();
-  return reach(mcp2515::Control::after_reset);
+  return reach(mcp2515::Control::after_reset) != 0;
 }
 
 ROIO_MCP2515_MEMBER(Status)::begin(const Mcp2515Config& config) {
@@ -123,27 +126,16 @@ ROIO_MCP2515_MEMBER_OF(Setup, Status)::start(const Setup& setup) {
   count_what_is_forgotten();
   forget_chip();
   control_ = setup.control();
-  uint8_t control = Control::after_reset;
-  for (uint8_t left = mcp2515::pauses; left != 0; --left) {
-    if (!enters(control)) {
-      continue;
-    }
-    if (control == control_) {
-      status_ |= QuickStatus::txif;
-      if (Port::has_interrupt_line && !line().is_on()) {
-        lose_line();
-      }
-      return Status::ok;
-    }
-    if (!configure(setup)) {
-      return Status::no_chip;
-    }
-    try_line();
-    control = control_;
-    left = mcp2515::pauses;
-  }
-  if (control != control_) {
+  if (reach(Control::after_reset) == 0 || !configure(setup)) {
     return Status::no_chip;
+  }
+  try_line();
+  if (reach(setup.control()) != 0) {
+    status_ = QuickStatus::txif;
+    if (Port::has_interrupt_line && !line().is_on()) {
+      lose_line();
+    }
+    return Status::ok;
   }
   // Not later either, when nobody expects it any more.
   write_register(Register::canctrl, Control::after_reset);
@@ -185,7 +177,7 @@ ROIO_MCP2515_MEMBER(Status)::check_clock(const Mcp2515Config& config, uint32_t o
   if (!reset_chip() || !configure(config)) {
     return Status::no_chip;
   }
-  if (!reach(static_cast<uint8_t>(mcp2515::Mode::loopback) | Control::clock_out)) {
+  if (reach(static_cast<uint8_t>(mcp2515::Mode::loopback) | Control::clock_out) == 0) {
     return Status::wrong_mode;
   }
   const uint32_t clocks =
@@ -195,7 +187,7 @@ ROIO_MCP2515_MEMBER(Status)::check_clock(const Mcp2515Config& config, uint32_t o
   const uint32_t limit_us = mcp2515::clock_timeout_us + mcp2515::slowest_clock_factor * expected_us;
   const uint32_t elapsed_us = time_clock_frames(limit_us);
   // Also ends what may still be under way.
-  if (!reach(Control::after_reset) || elapsed_us == 0) {
+  if (reach(Control::after_reset) == 0 || elapsed_us == 0) {
     return Status::no_chip;
   }
   if (elapsed_us >= limit_us) {

@@ -14,14 +14,18 @@ constexpr uint8_t calls_at_most = 192;  ///< Where there is always a frame to be
 
 // --- the chip's registers ------------------------------------------------------------------------
 
+ROIO_MCP2515_MEMBER(uint8_t)::access_register(Register address, uint8_t value,
+                                              Instruction instruction) {
+  RegisterAccess access(port(), instruction, address);
+  return access.exchange(value);
+}
+
 ROIO_MCP2515_MEMBER(uint8_t)::read_register(Register address) {
-  RegisterAccess access(port(), Instruction::read, address);
-  return access.exchange(0);
+  return access_register(address, 0, Instruction::read);
 }
 
 ROIO_MCP2515_MEMBER(void)::write_register(Register address, uint8_t value) {
-  RegisterAccess access(port(), Instruction::write, address);
-  access.put(value);
+  access_register(address, value, Instruction::write);
 }
 
 ROIO_MCP2515_MEMBER(void)::modify_register(Register address, uint8_t mask, uint8_t value) {
@@ -35,14 +39,21 @@ ROIO_MCP2515_MEMBER(void)::read_error_counters(uint8_t& transmit, uint8_t& recei
   receive = read_register(Register::rec);
 }
 
+/// @return the bits of the mode in which CANSTAT differs from `control`: 0 when that is its mode.
+ROIO_MCP2515_MEMBER(uint8_t)::mode_differs_from(uint8_t control) {
+  return (read_register(Register::canstat) ^ control) & mcp2515::Control::mode_mask;
+}
+
 // --- what READ STATUS shows ----------------------------------------------------------------------
 
 /// The three TXnIF are set, and the chip sends nothing but what it was told to. A chip that was
 /// reset, and lines stuck at 0 or 1, look different; but for one that is at 1 when all buffers are
 /// in use.
-ROIO_MCP2515_MEMBER(bool)::is_plausible(uint8_t quick) {
-  const uint8_t may_be = static_cast<uint8_t>(QuickStatus::any_rx | (status_ ^ QuickStatus::txif));
-  return (quick & static_cast<uint8_t>(~may_be)) == QuickStatus::txif;
+/// @return the bits that cannot be so: 0 when all is well.
+ROIO_MCP2515_MEMBER(uint8_t)::nonsense_in(uint8_t quick) const {
+  constexpr uint8_t no_rx = static_cast<uint8_t>(~QuickStatus::any_rx);
+  const uint8_t changed = quick ^ status_;
+  return changed & (quick | QuickStatus::txif) & no_rx;
 }
 
 ROIO_MCP2515_MEMBER(uint8_t)::read_status() {
@@ -55,44 +66,33 @@ ROIO_MCP2515_MEMBER(uint8_t)::read_status() {
 /// Reads READ STATUS and takes in what it shows. Nonsense may come from a spike on the wires, once;
 /// then it tells of a lost chip.
 ROIO_MCP2515_MEMBER(void)::look() {
-  for (uint8_t tries = 2; tries != 0; --tries) {
-    if (take_in(read_quick_status())) {
-      return;
-    }
+  // For a node that fills the bus time is worth more than room.
+  const uint8_t nonsense = Traits::back_to_back ? take_in(read_quick_status()) : look_once();
+  if (nonsense != 0 && look_once() != 0) {
+    lose_chip();
   }
-  lose_chip();
+}
+
+/// @return as take_in().
+ROIO_MCP2515_MEMBER(uint8_t)::look_once() {
+  return take_in(read_quick_status());
 }
 
 /// Takes in what READ STATUS showed.
-/// @return whether it was plausible.
-ROIO_MCP2515_MEMBER(bool)::take_in(uint8_t quick) {
-  if (quick == QuickStatus::everything) {
-    return take_in_everything();
+/// @return 0; or what made no sense of it: it was not taken in, or came from a line that is at 1.
+ROIO_MCP2515_MEMBER(uint8_t)::take_in(uint8_t quick) {
+  const uint8_t nonsense = nonsense_in(quick);
+  if (nonsense != 0) {
+    return nonsense;
   }
-  if (!is_plausible(quick)) {
-    return false;
-  }
-  if (received() == QuickStatus::rx1 && (quick & QuickStatus::rx1) != 0) {
+  if ((status_ & QuickStatus::rx0) == 0 && (status_ & quick & QuickStatus::rx1) != 0) {
     quick &= static_cast<uint8_t>(~QuickStatus::rx0);  // newer: not before RXB1 was read
   }
   const uint8_t ended = requested() & static_cast<uint8_t>(~quick);
   status_ = quick;
   settle(ended);
-  return true;
-}
-
-/// The same where a line that is at 1 looks as a chip does of which all buffers are in use: there
-/// is no mode 7, which CANSTAT would have then.
-ROIO_MCP2515_MEMBER(bool)::take_in_everything() {
-  constexpr uint8_t no_mode = mcp2515::Control::mode_mask;
-  if ((status_ | QuickStatus::any_rx) != QuickStatus::everything ||
-      (read_register(Register::canstat) & no_mode) == no_mode) {
-    return false;
-  }
-  if (received() != QuickStatus::rx1) {
-    status_ = QuickStatus::everything;
-  }
-  return true;
+  // A line that is at 1 looks as a chip does of which all buffers are in use; but it has no mode.
+  return quick >= QuickStatus::all_in_use ? mode_differs_from(control_) : 0;
 }
 
 // --- the interrupt line --------------------------------------------------------------------------
@@ -186,9 +186,7 @@ ROIO_MCP2515_MEMBER(bool)::diagnose(uint8_t errors) {
 }
 
 ROIO_MCP2515_MEMBER(void)::lose_chip() {
-  if (running()) {
-    count(counters_.chip_losses);
-  }
+  count(counters_.chip_losses);
   forget_chip();
 }
 
@@ -200,7 +198,9 @@ ROIO_MCP2515_MEMBER(void)::forget_chip() {
   }
   status_ = 0;
   requests().set_aborting(false);
-  error_flags_ = 0;
+  if (Traits::diagnoses) {
+    error_flags_ = 0;
+  }
   if (Traits::reports_outcomes) {
     end(unknown, TxOutcome::unknown);
   }

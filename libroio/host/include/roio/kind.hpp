@@ -143,15 +143,17 @@ ROIO_EXPORT Parsed<Bytes> pack(const MessageKind& message,
 ROIO_EXPORT std::vector<Reading> unpack(const MessageKind& message,
                                         std::span<const std::uint8_t> data);
 
-/// A value as a person types it: a number, the name of a choice, or bytes in hexadecimal. A number
-/// between two steps is refused, and both are named.
+/// A value as a person types it: a number, the name of a choice, or bytes in hexadecimal. What
+/// Reading::text() gives of a valid value is one. A number between two steps is refused, and both
+/// are named.
 ROIO_EXPORT Parsed<FieldValue> parse_value(const Field& field, std::string_view text);
 
 /// Reads a kind. @param origin what errors call it: a file's name.
 /// @return an error: "servo-arm.kind.json:7: hears.angles.fields[0].type: "u9"; expected u8, ...":
 ///         file, line, the place in it, what was there and what was expected. A field that the
 ///         format does not have is one, and the nearest name that it has is suggested; so are two
-///         messages of one direction that cannot be told apart.
+///         messages of one direction that cannot be told apart. ParseError::offset is that of the
+///         value; 0 where the file as a whole is refused. Throws nothing but std::bad_alloc.
 ROIO_EXPORT Parsed<Kind> parse_kind(std::string_view text, std::string_view origin);
 /// The same from a file, whose name must be that of the kind and ".kind.json".
 ROIO_EXPORT Parsed<Kind> load_kind(const std::filesystem::path& file);

@@ -37,8 +37,8 @@ struct PinPart {
 /// What roio-sim needs to stand in for the board of a place.
 struct SimulatedBoard {
   std::string board;               ///< "uno", "nano", "leonardo", "micro" or "mega".
-  std::filesystem::path firmware;  ///< An ELF file or a sketch; a relative one is from the robot
-                                   ///< file's folder, and is so here.
+  std::filesystem::path firmware;  ///< An ELF file or a sketch. One that the file has relative to
+                                   ///< itself has the file's folder in front of it here.
   std::uint32_t crystal_hz = 16000000;
   std::optional<std::string> cs_pin;   ///< None: 10.
   std::optional<std::string> int_pin;  ///< None: 2.
@@ -64,7 +64,7 @@ class ROIO_EXPORT Robot {
  public:
   std::string name;
   std::string description;
-  std::string version;        ///< These three as the file says; empty: it does not.
+  std::string version;  ///< These three as the file says; empty: it does not.
   std::string serial_number;
   std::string maker;
   std::string bus;                       ///< As open() takes it; empty: not named.
@@ -88,7 +88,7 @@ class ROIO_EXPORT Robot {
   /// the name agree on the bytes.
   /// @return an error says which messages there are.
   [[nodiscard]] Parsed<const MessageKind*> message(Address source, Address destination,
-                                                   std::string_view name) const;
+                                                   std::string_view message_name) const;
 
   /// A message to a place, from none: Node::send() puts its own address in. Normal priority.
   /// @return an error as of message(), pack() and address_of().
@@ -106,7 +106,8 @@ class ROIO_EXPORT Robot {
 
 struct LoadOptions {
   /// Where kinds are looked for after the robot file's own folder and `kinds` in it, and before
-  /// roio/kinds in each of $XDG_DATA_DIRS (none: /usr/local/share, /usr/share).
+  /// roio/kinds in $XDG_DATA_HOME (none: ~/.local/share) and in each of $XDG_DATA_DIRS (none:
+  /// /usr/local/share, /usr/share).
   std::vector<std::filesystem::path> kind_folders;
 };
 

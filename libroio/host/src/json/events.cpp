@@ -63,7 +63,7 @@ bool JsonEvents::null() {
 }
 
 bool JsonEvents::boolean(bool value) {
-  if (place_ != Place::field || field_ != Field::is_broadcast) {
+  if (place_ != Place::field || field_ != JsonField::is_broadcast) {
     return refuse(value ? "true" : "false");
   }
   fields_.is_broadcast = value;
@@ -81,13 +81,13 @@ bool JsonEvents::number_unsigned(number_unsigned_t value) {
   }
   if (place_ == Place::field) {
     switch (field_) {
-      case Field::address:
+      case JsonField::address:
         return integer(value, broadcast_node, fields_.address);
-      case Field::subnet:
+      case JsonField::subnet:
         return integer(value, max_subnet, fields_.subnet);
-      case Field::message_length:
+      case JsonField::message_length:
         return integer(value, max_data_length, fields_.message_length);
-      case Field::timestamp:
+      case JsonField::timestamp:
         return timestamp(std::to_string(value));
       default:
         break;
@@ -98,7 +98,7 @@ bool JsonEvents::number_unsigned(number_unsigned_t value) {
 
 bool JsonEvents::number_float(number_float_t /*value*/, const string_t& text) {
   const std::string number = with_point(text);
-  const bool is_timestamp = place_ == Place::field && field_ == Field::timestamp;
+  const bool is_timestamp = place_ == Place::field && field_ == JsonField::timestamp;
   return is_timestamp ? timestamp(number) : refuse(number);
 }
 
@@ -107,21 +107,21 @@ bool JsonEvents::string(string_t& value) {
     return refuse(quote(value));
   }
   switch (field_) {
-    case Field::type:
+    case JsonField::type:
       return value == "Roio" || refuse(quote(value));
-    case Field::subnet:
-    case Field::address:
+    case JsonField::subnet:
+    case JsonField::address:
       return refuse_module(value);
-    case Field::priority: {
+    case JsonField::priority: {
       const Parsed<Priority> priority = parse_priority(value);
       fields_.priority = priority ? *priority : Priority::normal;
       return priority || refuse(quote(value));
     }
-    case Field::message_class:
+    case JsonField::message_class:
       return message_class(value);
-    case Field::source:
+    case JsonField::source:
       return address(parse_source(value), fields_.source);
-    case Field::destination:
+    case JsonField::destination:
       return address(parse_address(value), fields_.destination);
     default:
       return refuse(quote(value));
@@ -155,7 +155,7 @@ bool JsonEvents::end_object() {
 }
 
 bool JsonEvents::start_array(std::size_t /*size*/) {
-  if (place_ != Place::field || field_ != Field::data) {
+  if (place_ != Place::field || field_ != JsonField::data) {
     return refuse("an array");
   }
   place_ = Place::data;
@@ -165,7 +165,7 @@ bool JsonEvents::start_array(std::size_t /*size*/) {
 bool JsonEvents::end_array() {
   place_ = Place::field;
   if (data_count_ > fields_.data.data.size()) {
-    return fail(field_error(Field::data,
+    return fail(field_error(JsonField::data,
                             std::to_string(data_count_) + " bytes; a frame carries at most 8"));
   }
   fields_.data.length = static_cast<std::uint8_t>(data_count_);
@@ -195,8 +195,8 @@ bool JsonEvents::refuse(const std::string& value) {
     case Place::field:
       return fail(unexpected(field_, shown));
     case Place::data:
-      return fail(field_error(Field::data, shown + " at index " + std::to_string(data_count_) +
-                                               "; expected integers 0..255"));
+      return fail(field_error(JsonField::data, shown + " at index " + std::to_string(data_count_) +
+                                                   "; expected integers 0..255"));
     case Place::start:
     case Place::end:
       break;
@@ -208,7 +208,7 @@ bool JsonEvents::refuse_module(const std::string& name) {
   return refuse(quote(name) + " addresses a software module, which is on no bus");
 }
 
-bool JsonEvents::begin(Field field) {
+bool JsonEvents::begin(JsonField field) {
   bool& seen = fields_.seen[static_cast<std::size_t>(field)];
   if (seen) {
     return fail(field_error(field, "given twice; expected once"));

@@ -16,7 +16,7 @@ namespace roio {
 /// costs no stack. Each event returns whether to go on; why not is error() or syntax_error().
 class JsonEvents final : public nlohmann::json_sax<nlohmann::json> {
  public:
-  [[nodiscard]] const Fields& fields() const { return fields_; }
+  [[nodiscard]] const JsonFields& fields() const { return fields_; }
   [[nodiscard]] const std::optional<ParseError>& error() const { return error_; }
   /// Where the text is no JSON, and whether that is after a whole message.
   [[nodiscard]] std::optional<std::size_t> syntax_error() const { return syntax_error_; }
@@ -47,16 +47,16 @@ class JsonEvents final : public nlohmann::json_sax<nlohmann::json> {
   bool fail(std::string message);
   bool refuse(const std::string& value);
   bool refuse_module(const std::string& name);
-  bool begin(Field field);
+  bool begin(JsonField field);
   bool integer(std::uint64_t value, std::uint8_t max, std::uint8_t& out);
   bool data_byte(std::uint64_t value);
   bool timestamp(const std::string& number);
   bool message_class(const std::string& value);
   bool address(const Parsed<Address>& parsed, Address& out);
 
-  Fields fields_;
+  JsonFields fields_;
   Place place_ = Place::start;
-  Field field_ = Field::type;  // the one whose value comes, in Place::field
+  JsonField field_ = JsonField::type;  // the one whose value comes, in Place::field
   std::size_t data_count_ = 0;
   std::optional<ParseError> error_;
   std::optional<std::size_t> syntax_error_;

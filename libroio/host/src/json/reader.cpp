@@ -15,49 +15,49 @@ namespace {
 constexpr std::size_t max_text = 4096;
 constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";
 
-std::optional<Field> missing_field(const Fields& fields) {
-  for (const Field field :
-       {Field::type, Field::is_broadcast, Field::subnet, Field::message_length, Field::data}) {
+std::optional<JsonField> missing_field(const JsonFields& fields) {
+  for (const JsonField field : {JsonField::type, JsonField::is_broadcast, JsonField::subnet,
+                                JsonField::message_length, JsonField::data}) {
     if (!fields.has(field)) {
       return field;
     }
   }
-  if (!fields.has(Field::address) && !fields.is_broadcast) {
-    return Field::address;
+  if (!fields.has(JsonField::address) && !fields.is_broadcast) {
+    return JsonField::address;
   }
   return std::nullopt;
 }
 
 // What each field allows on its own, and all of them together do not.
-std::optional<std::string> contradiction(const Fields& fields) {
+std::optional<std::string> contradiction(const JsonFields& fields) {
   const std::string address = std::to_string(fields.address);
   if (fields.is_broadcast && fields.address != broadcast_node) {
-    return field_error(Field::address, address + " in a broadcast; expected 255, or none");
+    return field_error(JsonField::address, address + " in a broadcast; expected 255, or none");
   }
   if (!fields.is_broadcast && fields.address == broadcast_node) {
-    return unexpected(Field::address, address + " without isBroadcast true");
+    return unexpected(JsonField::address, address + " without isBroadcast true");
   }
   if (fields.message_length != fields.data.length) {
-    return field_error(Field::message_length, std::to_string(fields.message_length) +
-                                                  R"(, but "data" has )" +
-                                                  std::to_string(fields.data.length));
+    return field_error(JsonField::message_length, std::to_string(fields.message_length) +
+                                                      R"(, but "data" has )" +
+                                                      std::to_string(fields.data.length));
   }
   const Address destination{fields.subnet, fields.address};
-  if (fields.has(Field::destination) && fields.destination != destination) {
-    return field_error(Field::destination, quote(to_string(fields.destination)) +
-                                               R"(, but "subnet" and "address" say )" +
-                                               quote(to_string(destination)));
+  if (fields.has(JsonField::destination) && fields.destination != destination) {
+    return field_error(JsonField::destination, quote(to_string(fields.destination)) +
+                                                   R"(, but "subnet" and "address" say )" +
+                                                   quote(to_string(destination)));
   }
   return std::nullopt;
 }
 
-JsonMessage make_message(const Fields& fields) {
+JsonMessage make_message(const JsonFields& fields) {
   JsonMessage out;
   out.message.header = {fields.priority, fields.message_class,
                         Address{fields.subnet, fields.address}, fields.source};
   out.message.length = fields.data.length;
   std::copy(fields.data.data.begin(), fields.data.data.end(), out.message.data);
-  out.has_source = fields.has(Field::source);
+  out.has_source = fields.has(JsonField::source);
   out.time = fields.timestamp;
   return out;
 }
@@ -144,7 +144,7 @@ Parsed<JsonMessage> parse_json(std::string_view text) {
   if (!is_read) {
     return not_json(text, events);
   }
-  const Fields& fields = events.fields();
+  const JsonFields& fields = events.fields();
   if (const auto missing = missing_field(fields)) {
     return ParseError{unexpected(*missing, "missing"), text.size()};
   }

@@ -124,10 +124,11 @@ class ChipPort {
         put(*bytes++);
       }
     }
-    void receive(std::uint8_t* bytes, std::uint8_t count) {
+    std::uint8_t* receive(std::uint8_t* bytes, std::uint8_t count) {
       for (; count > 0; --count) {
         *bytes++ = exchange(0);
       }
+      return bytes;
     }
     void release() { wire_.deselect(); }
     void restart(std::uint8_t first) {

@@ -1,21 +1,17 @@
 #include "attach/attach.hpp"
 
-#include <sys/socket.h>
-#include <sys/un.h>
-#include <unistd.h>
-
-#include <array>
-#include <cerrno>
 #include <chrono>
-#include <cstring>
 #include <memory>
 #include <roio/bridge.hpp>
 #include <roio/bus.hpp>
 #include <roio/error.hpp>
 #include <roio/text.hpp>
+#include <span>
 #include <system_error>
 
+#include "attach/claim.hpp"
 #include "attach/forward.hpp"
+#include "attach/ring_watch.hpp"
 #include "program/exit_status.hpp"
 #include "program/interrupt.hpp"
 #include "program/output.hpp"
@@ -28,47 +24,41 @@ using Clock = std::chrono::steady_clock;
 constexpr Clock::duration look_around_every = std::chrono::milliseconds(200);
 constexpr Clock::duration report_every = std::chrono::seconds(1);
 
-/// The right to attach a bridge to an interface, held until the process ends: with two bridges of
-/// one bus on it, a frame would go round for ever. An abstract socket is known, as an interface is,
-/// within its network namespace.
-class InterfaceClaim {
- public:
-  explicit InterfaceClaim(const std::string& interface)
-      : socket_(::socket(AF_UNIX, SOCK_DGRAM | SOCK_CLOEXEC, 0)) {
-    const std::string name = "roio-bridge-attach:" + interface;
-    sockaddr_un address{};
-    address.sun_family = AF_UNIX;
-    std::memcpy(&address.sun_path[1], name.data(), name.size());
-    const auto length = static_cast<socklen_t>(offsetof(sockaddr_un, sun_path) + 1 + name.size());
-    if (::bind(socket_, reinterpret_cast<const sockaddr*>(&address), length) != 0) {
-      const int error = errno;
-      ::close(socket_);
-      if (error == EADDRINUSE) {
-        throw Failure(interface +
-                      ": another bridge is attached to it; give this one an interface "
-                      "of its own");
-      }
-      throw std::system_error(error, std::generic_category(), interface);
-    }
-  }
-  InterfaceClaim(const InterfaceClaim&) = delete;
-  InterfaceClaim& operator=(const InterfaceClaim&) = delete;
-  ~InterfaceClaim() { ::close(socket_); }
-
- private:
-  int socket_;
-};
-
-std::unique_ptr<Bus> open_bus(const std::string& text, const BusUrl& url) {
+std::unique_ptr<Bus> open_bus(const std::string& text) {
   try {
     return open_until_signal(text);
   } catch (const std::system_error& error) {
     if (error.code() != Errc::no_such_interface) {
       throw;
     }
-    throw UsageError(url.target + ": no such network interface; `ip link add " + url.target +
-                     " type vcan; ip link set " + url.target +
+    const std::string interface = parse_bus_url(text)->target;
+    throw UsageError(interface + ": no such network interface; `ip link add " + interface +
+                     " type vcan; ip link set " + interface +
                      " up` makes a virtual one, and local:NAME needs none");
+  }
+}
+
+/// A bridge goes by the name of its port.
+std::string short_name(Bus& bus) {
+  const Bridge* const bridge = bridge_of(bus);
+  return bridge != nullptr ? bridge->info().port : bus.name();
+}
+
+/// Two bridges of one bus on one interface are a ring that nobody can tell beforehand.
+std::unique_ptr<Claim> claim_interface(const BusUrl& one, const BusUrl& other) {
+  if (one.kind != BusUrl::Kind::serial || other.kind != BusUrl::Kind::socketcan) {
+    return nullptr;
+  }
+  return std::make_unique<Claim>(
+      "roio-bridge-attach:" + other.target,
+      other.target + ": another bridge is attached to it; give this one an interface of its own");
+}
+
+void refuse_one_bus(const AttachOptions& options) {
+  const BusUrl first = *parse_bus_url(options.first);
+  const BusUrl second = *parse_bus_url(options.second);
+  if (first.kind == second.kind && first.target == second.target) {
+    throw UsageError(options.first + " and " + options.second + " are one bus; expected two");
   }
 }
 
@@ -92,18 +82,18 @@ class Watch {
 
 class Attachment {
  public:
-  Attachment(NamedBus bridge, NamedBus bus, bool verbose)
-      : bridge_(std::move(bridge)), bus_(std::move(bus)), verbose_(verbose) {}
+  Attachment(NamedBus first, NamedBus second, bool verbose)
+      : first_(std::move(first)), second_(std::move(second)), verbose_(verbose) {}
 
   void run() {
     wait_for_the_end();
-    bridge_.bus.cancel();
-    bus_.bus.cancel();
+    first_.bus.cancel();
+    second_.bus.cancel();
     up_.stop();
     down_.stop();
     // What was accepted and not handed over is known then.
-    bridge_.bus.close();
-    bus_.bus.close();
+    first_.bus.close();
+    second_.bus.close();
     report();
     up_.rethrow();
     down_.rethrow();
@@ -111,13 +101,13 @@ class Attachment {
 
  private:
   void wait_for_the_end() {
-    Watch bridge(bridge_);
-    Watch bus(bus_);
+    Watch first(first_);
+    Watch second(second_);
     Clock::time_point next_report = Clock::now() + report_every;
     while (!up_.failed() && !down_.failed() &&
            Interrupt::sleep_until(Clock::now() + look_around_every)) {
-      bridge.look();
-      bus.look();
+      first.look();
+      second.look();
       if (verbose_ && Clock::now() >= next_report) {
         report();
         next_report += report_every;
@@ -130,24 +120,38 @@ class Attachment {
     note(down_.report());
   }
 
-  NamedBus bridge_;
-  NamedBus bus_;
+  void look_for_ring(std::size_t from, std::span<const Frame> frames) {
+    if (!ring_watch_.pass(from, frames, Clock::now())) {
+      throw Failure(first_.name + " and " + second_.name +
+                    ": frames go round: something else joins the two as well; ended, as nothing "
+                    "else would end it");
+    }
+  }
+
+  NamedBus first_;
+  NamedBus second_;
   bool verbose_;
-  Forwarder up_{bridge_, bus_};
-  Forwarder down_{bus_, bridge_};
+  RingWatch ring_watch_;
+  Forwarder up_{first_, second_, [this](auto frames) { look_for_ring(0, frames); }};
+  Forwarder down_{second_, first_, [this](auto frames) { look_for_ring(1, frames); }};
 };
 
 }  // namespace
 
-int bridge_attach(const BridgeAttachOptions& options) {
-  const BusUrl url = *parse_bus_url(options.bus);
-  const auto bus = open_bus(options.bus, url);
-  const auto claim =
-      url.kind == BusUrl::Kind::socketcan ? std::make_unique<InterfaceClaim>(url.target) : nullptr;
-  const auto bridge = open_until_signal(options.port);
-  const std::string port = bridge_of(*bridge)->info().port;
-  note(port + ": attached to " + bus->name());
-  Attachment({*bridge, port}, {*bus, bus->name()}, options.verbose).run();
+int attach(const AttachOptions& options) {
+  refuse_one_bus(options);
+  const BusUrl first_url = *parse_bus_url(options.first);
+  const BusUrl second_url = *parse_bus_url(options.second);
+  const auto second = open_bus(options.second);
+  const auto claim = claim_interface(first_url, second_url);
+  const auto first = open_bus(options.first);
+  const auto other_claim = claim_interface(second_url, first_url);
+  const NamedBus first_named{*first, short_name(*first)};
+  const NamedBus second_named{*second, short_name(*second)};
+  const JointClaim joint(full_name(*first, options.first), full_name(*second, options.second),
+                         first_named.name + " and " + second_named.name);
+  note(first_named.name + ": attached to " + second_named.name);
+  Attachment(first_named, second_named, options.verbose).run();
   return exit_signal + Interrupt::signal();
 }
 

@@ -1,4 +1,4 @@
-/// `roio-cli bridge attach`: a bridge on a serial port and another bus become one bus.
+/// `roio-cli attach`: two buses become one.
 #ifndef ROIO_CLI_ATTACH_HPP
 #define ROIO_CLI_ATTACH_HPP
 
@@ -6,15 +6,15 @@
 
 namespace roio::cli {
 
-struct BridgeAttachOptions {
-  std::string port;  ///< As open() takes it: "serial:/dev/ttyACM0".
-  std::string bus;   ///< "vcan0", "local:robot".
+struct AttachOptions {
+  std::string first;  ///< As open() takes it: "serial:/dev/ttyACM0", "vcan0", "local:robot".
+  std::string second;
   bool verbose = false;
 };
 
-/// Until a signal.
+/// Until a signal, or a storm: frames that go round for ever.
 /// @return the exit status. @throws UsageError, Failure, std::system_error.
-int bridge_attach(const BridgeAttachOptions& options);
+int attach(const AttachOptions& options);
 
 }  // namespace roio::cli
 

@@ -21,8 +21,12 @@ constexpr Timeout send_time = std::chrono::seconds(1);
 
 }  // namespace
 
-Forwarder::Forwarder(NamedBus from, NamedBus to)
-    : from_(std::move(from)), to_(std::move(to)), patience_(send_time), thread_([this] {
+Forwarder::Forwarder(NamedBus from, NamedBus to, Inspect inspect)
+    : from_(std::move(from)),
+      to_(std::move(to)),
+      inspect_(std::move(inspect)),
+      patience_(send_time),
+      thread_([this] {
         try {
           run();
         } catch (...) {
@@ -56,6 +60,9 @@ void Forwarder::run() {
     frames.clear();
     for (const Received& one : std::span(received).first(transfer.count)) {
       frames.push_back(one.frame);
+    }
+    if (inspect_) {
+      inspect_(frames);
     }
     forward(frames);
   }

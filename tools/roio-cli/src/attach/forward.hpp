@@ -6,6 +6,7 @@
 #include <chrono>
 #include <cstdint>
 #include <exception>
+#include <functional>
 #include <roio/bus.hpp>
 #include <span>
 #include <string>
@@ -23,7 +24,11 @@ struct NamedBus {
 /// nobody else may receive from one, or send to the other.
 class Forwarder {
  public:
-  Forwarder(NamedBus from, NamedBus to);
+  /// Sees the frames before they are handed on, in the Forwarder's thread. What it throws ends
+  /// that.
+  using Inspect = std::function<void(std::span<const Frame>)>;
+
+  Forwarder(NamedBus from, NamedBus to, Inspect inspect = {});
   Forwarder(const Forwarder&) = delete;
   Forwarder& operator=(const Forwarder&) = delete;
   ~Forwarder() { stop(); }
@@ -47,6 +52,7 @@ class Forwarder {
 
   NamedBus from_;
   NamedBus to_;
+  Inspect inspect_;
   Timeout patience_;
   Clock::time_point stop_at_;  // once stopping_ is set
   std::atomic<bool> stopping_{false};

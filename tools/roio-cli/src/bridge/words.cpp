@@ -136,13 +136,13 @@ BridgeIdentifyOptions BridgeWords::parse_identify() const {
   return {port_of(*identify_), duration};
 }
 
-BridgeAttachOptions BridgeWords::parse_attach() const {
-  BridgeAttachOptions options;
-  options.port = port_of(*attach_);
+AttachOptions BridgeWords::parse_attach() const {
+  AttachOptions options;
+  options.first = port_of(*attach_);
   if (bus_.empty()) {
     refuse("bridge attach", "expected BUS after PORT: an interface such as vcan0, or local:NAME");
   }
-  options.bus = parse_bus(bus_);
+  options.second = parse_bus(bus_);
   if (parse_bus_url(bus_)->kind == BusUrl::Kind::serial) {
     throw UsageError("BUS: expected an interface such as vcan0, or local:NAME, found " +
                      quote(bus_));

@@ -29,7 +29,7 @@ class BridgeWords {
   [[nodiscard]] BridgeShowOptions parse_show() const;
   [[nodiscard]] BridgeSetOptions parse_set() const;
   [[nodiscard]] BridgeIdentifyOptions parse_identify() const;
-  [[nodiscard]] BridgeAttachOptions parse_attach() const;
+  [[nodiscard]] AttachOptions parse_attach() const;
 
   std::string port_, bitrate_text_, mode_text_, address_text_, seconds_text_ = "5", bus_;
   CLI::App* app_;

@@ -1,28 +1,18 @@
-/// `roio-cli dump`: shows what is on a bus.
+/// `roio-cli dump`: shows what is on a bus, or on several.
 #ifndef ROIO_CLI_DUMP_HPP
 #define ROIO_CLI_DUMP_HPP
 
-#include <cstdint>
-#include <optional>
-#include <roio/bus.hpp>
-#include <string>
-#include <vector>
-
-#include "form/frame_text.hpp"
+#include "form/record_format.hpp"
+#include "listen/listener.hpp"
 
 namespace roio::cli {
 
 struct DumpOptions {
-  enum class Form : std::uint8_t { text, log, json };
-
-  std::string bus;
-  std::vector<std::string> filters;
-  std::optional<std::uint64_t> count;  ///< End after so many frames shown.
-  std::optional<Timeout> quiet_time;   ///< End after so long without one.
+  ListenOptions listen;
   Form form = Form::text;
   TimeColumn::Mode time = TimeColumn::Mode::none;
-  bool no_foreign = false;
-  bool errors = false;
+  bool colour_sources = false;
+  bool bytes_only = false;  ///< Messages have no names, places have.
   bool verbose = false;
 };
 

@@ -1,7 +1,8 @@
 #include "dump/words.hpp"
 
-#include <limits>
 #include <roio/text.hpp>
+#include <string>
+#include <tuple>
 
 #include "program/words.hpp"
 
@@ -10,6 +11,10 @@ namespace {
 
 constexpr const char* examples =
     R"(It ends by Ctrl-C, after -n N frames, or after -T MS without one.
+
+Several BUS are shown in one, with a column for the bus. A word after BUS is one
+more when it is local:..., serial:... or a name and a number, as can1; -b BUS
+names any.
 
 FILTER is one of
   to=0.2      to node 0.2             to=0.*      broadcast to subnet 0
@@ -26,12 +31,15 @@ Examples:
   roio-cli dump can0 to=0.2 'to=0.*'        what node 0.2 hears
   roio-cli dump can0 to=0.2 or from=0.2     what node 0.2 hears or says
   roio-cli dump -n 1 -T 1000 can0 from=0.3  one message; 1 if none within 1 s
-  roio-cli dump --log can0 > drive.log      for canplayer, log2asc and send
+  roio-cli dump -t A can0 can1 urgent       two buses, with date and time
+  roio-cli dump --log can0 > drive.log      for canplayer, log2asc and play
+  roio-cli dump --pcap can0 | wireshark -k -i -    live, in Wireshark
   roio-cli dump --json can0 | jq .data      one JSON object a line)";
 
 TimeColumn::Mode parse_time_mode(const std::string& text) {
-  if (text != "a" && text != "d" && text != "z") {
-    throw UsageError("-t: expected a (absolute), d (delta) or z (zero), found " + quote(text));
+  if (text != "a" && text != "A" && text != "d" && text != "z") {
+    throw UsageError("-t: expected a (absolute), A (with date), d (delta) or z (zero), found " +
+                     quote(text));
   }
   return static_cast<TimeColumn::Mode>(text.front());
 }
@@ -40,43 +48,51 @@ TimeColumn::Mode parse_time_mode(const std::string& text) {
 
 DumpWords::DumpWords(CLI::App& program)
     : app_(program.add_subcommand("dump", "Show what is on a bus")),
-      count_(option(*app_, "-n", count_text_, "N", "End after N frames")),
-      quiet_(option(*app_, "-T", quiet_text_, "MS",
-                    "End after MS without a frame (1 if -n not reached)")),
-      time_(option(*app_, "-t", time_text_, "a|d|z",
-                   "Time: absolute, since the frame before, the first")),
+      listen_(*app_),
+      time_(option(*app_, "-t", time_text_, "a|A|d|z",
+                   "Time: absolute, dated, since the last, the first")),
       log_(flag(*app_, "--log", "candump -L's lines; notes go to standard error")),
       json_(flag(*app_, "--json", "JSON lines")),
-      no_foreign_(flag(*app_, "--no-foreign", "Hide what is no Roio message (11-bit, remote)")),
-      errors_(flag(*app_, "--errors", "Show the controller's error reports too")),
+      csv_(flag(*app_, "--csv", "Comma-separated values, for spreadsheets")),
+      pcap_(flag(*app_, "--pcap", "A capture for Wireshark, of one bus")),
+      colour_(flag(*app_, "-c", "On a terminal, a colour for each source")),
+      bytes_only_(flag(*app_, "-x", "Bytes, where the robot file has names for them")),
       verbose_(flag(*app_, "-v,--verbose", "Tell on stderr when listening, and the counts")) {
-  prepare(*app_, "dump [OPTIONS] BUS [FILTER...]", examples);
-  without_type(app_->add_option("BUS", bus_, "can0, local:NAME or serial:DEVICE"));
-  without_type(app_->add_option("FILTER", filters_, "Which frames; see below"));
+  prepare(*app_, "dump [OPTIONS] BUS... [FILTER...]", examples);
+}
+
+Form DumpWords::parse_form() const {
+  Form form = Form::text;
+  const char* given = nullptr;
+  for (const auto& [option, name, meant] :
+       {std::tuple(log_, "--log", Form::log), std::tuple(json_, "--json", Form::json),
+        std::tuple(csv_, "--csv", Form::csv), std::tuple(pcap_, "--pcap", Form::pcap)}) {
+    if (option->count() == 0) {
+      continue;
+    }
+    if (given != nullptr) {
+      throw UsageError(std::string("expected either ") + given + " or " + name + ", not both");
+    }
+    form = meant;
+    given = name;
+  }
+  if (form != Form::text && (time_->count() > 0 || colour_->count() > 0)) {
+    const bool time = time_->count() > 0;
+    throw UsageError(std::string(time ? "-t" : "-c") + ": expected without " + given +
+                     (time ? ", which has a time of its own" : ", which has no colours"));
+  }
+  return form;
 }
 
 DumpOptions DumpWords::parse_options() const {
   DumpOptions options;
-  if (count_->count() > 0) {
-    options.count = parse_number("-n", count_text_, 1, std::numeric_limits<std::uint32_t>::max());
-  }
-  if (quiet_->count() > 0) {
-    options.quiet_time = parse_ms("-T", quiet_text_, 1);
-  }
+  options.listen = listen_.parse_options();
   if (time_->count() > 0) {
     options.time = parse_time_mode(time_text_);
   }
-  if (log_->count() > 0 && json_->count() > 0) {
-    throw UsageError("expected either --log or --json, not both");
-  }
-  options.form = log_->count() > 0    ? DumpOptions::Form::log
-                 : json_->count() > 0 ? DumpOptions::Form::json
-                                      : DumpOptions::Form::text;
-  if (time_->count() > 0 && options.form != DumpOptions::Form::text) {
-    throw UsageError("-t: expected without --log and --json, which have a time of their own");
-  }
-  options.no_foreign = no_foreign_->count() > 0;
-  options.errors = errors_->count() > 0;
+  options.form = parse_form();
+  options.colour_sources = colour_->count() > 0;
+  options.bytes_only = bytes_only_->count() > 0;
   options.verbose = verbose_->count() > 0;
   return options;
 }
@@ -85,11 +101,10 @@ DumpOptions DumpWords::parse() const {
   refuse_rest(*app_, "dump");
   // First the options: in `dump -t local:robot`, what is wrong is not that BUS is missing.
   DumpOptions options = parse_options();
-  if (bus_.empty()) {
-    refuse("dump", "expected BUS");
+  listen_.parse_words(options.listen);
+  if (options.form == Form::pcap && options.listen.buses.size() > 1) {
+    throw UsageError("--pcap: expected one BUS, as its form has no place for a bus's name");
   }
-  options.bus = parse_bus(bus_);
-  options.filters = filters_;
   return options;
 }
 

@@ -4,9 +4,9 @@
 
 #include <CLI/CLI.hpp>
 #include <string>
-#include <vector>
 
 #include "dump/dump.hpp"
+#include "listen/words.hpp"
 
 namespace roio::cli {
 
@@ -24,17 +24,18 @@ class DumpWords {
 
  private:
   [[nodiscard]] DumpOptions parse_options() const;
+  [[nodiscard]] Form parse_form() const;
 
-  std::string bus_, count_text_, quiet_text_, time_text_;
-  std::vector<std::string> filters_;
+  std::string time_text_;
   CLI::App* app_;
-  CLI::Option* count_;
-  CLI::Option* quiet_;
+  ListenWords listen_;
   CLI::Option* time_;
   CLI::Option* log_;
   CLI::Option* json_;
-  CLI::Option* no_foreign_;
-  CLI::Option* errors_;
+  CLI::Option* csv_;
+  CLI::Option* pcap_;
+  CLI::Option* colour_;
+  CLI::Option* bytes_only_;
   CLI::Option* verbose_;
 };
 

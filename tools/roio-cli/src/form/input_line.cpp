@@ -25,25 +25,34 @@ InputLine of_kind(InputLine::Kind kind) {
 }
 
 // An error report is none to be sent.
-InputLine line_of(const Frame& frame, const std::string& interface_name = {}) {
+InputLine line_of(const Frame& frame) {
   return frame.kind == FrameKind::error ? of_kind(InputLine::Kind::news)
-                                        : InputLine{InputLine::Kind::frame, frame, interface_name};
+                                        : InputLine{InputLine::Kind::frame, frame};
 }
 
-Parsed<InputLine> from_json(std::string_view line, Address default_source) {
-  const auto frame = parse_json_line(line, default_source);
+Parsed<InputLine> from_json(std::string_view line, Address default_source, const Robot* robot) {
+  const auto frame = parse_json_line(line, default_source, robot);
   if (!frame) {
     return frame.error();
   }
-  return *frame ? line_of(**frame) : of_kind(InputLine::Kind::news);
+  if (!*frame) {
+    return of_kind(InputLine::Kind::news);
+  }
+  InputLine read = line_of((*frame)->frame);
+  read.time = (*frame)->time;
+  return read;
 }
 
-Parsed<InputLine> from_log(std::string_view line) {
-  const auto log = parse_log_line_of_any_time(line);
+Parsed<InputLine> from_log(std::string_view text) {
+  const auto timed = parse_log_line(text);
+  const auto log = timed ? timed : parse_log_line_of_any_time(text);
   if (!log) {
     return log.error();
   }
-  return line_of(log->frame, log->interface_name);
+  InputLine line = line_of(log->frame);
+  line.interface_name = log->interface_name;
+  line.time = timed ? std::optional(timed->time) : std::nullopt;
+  return line;
 }
 
 Parsed<InputLine> from_frame(std::string_view text) {
@@ -81,14 +90,15 @@ bool is_blank(std::string_view line) noexcept {
   return line.find_first_not_of(white_space) == std::string_view::npos;
 }
 
-Parsed<InputLine> parse_input_line(std::string_view line, Address default_source) {
+Parsed<InputLine> parse_input_line(std::string_view line, Address default_source,
+                                   const Robot* robot) {
   if (const auto error = check_line(line)) {
     return *error;
   }
   const std::size_t first = std::min(line.find_first_not_of(white_space), line.size());
   const std::string_view text = line.substr(first, line.find_last_not_of(white_space) + 1 - first);
   if (text.starts_with('{')) {
-    return from_json(line, default_source);
+    return from_json(line, default_source, robot);
   }
   if (text.starts_with('(')) {
     return from_log(text);
@@ -137,7 +147,7 @@ bool LineReader::fill() {
   std::array<char, 16384> more;
   const ssize_t count = ::read(fd_, more.data(), more.size());
   if (count < 0 && errno != EINTR && errno != EAGAIN) {
-    throw Failure("standard input: " + std::generic_category().message(errno));
+    throw Failure(name_ + ": " + std::generic_category().message(errno));
   }
   if (count > 0) {
     text_.append(more.data(), static_cast<std::size_t>(count));

@@ -1,61 +1,67 @@
 #include "form/json_lines.hpp"
 
+#include <chrono>
+#include <cmath>
 #include <iterator>
 #include <nlohmann/json.hpp>
 #include <roio/json.hpp>
 #include <roio/message.hpp>
+#include <roio/robot_json.hpp>
 #include <set>
 #include <string>
 #include <utility>
 
+#include "form/kind_name.hpp"
 #include "form/record_format.hpp"
 
 namespace roio::cli {
 namespace {
 
-const char* kind_name(FrameKind kind) {
-  switch (kind) {
-    case FrameKind::standard:
-      return "standard";
-    case FrameKind::standard_remote:
-      return "standard-remote";
-    case FrameKind::extended:
-      return "extended";
-    case FrameKind::extended_remote:
-      return "extended-remote";
-    case FrameKind::error:
-      break;
-  }
-  return "error";
-}
+using Json = nlohmann::json;
+
+// The last field of each line, where the lines are of several buses.
+constexpr std::string_view bus_field = ",\"bus\":";
 
 // Messages are what parse_json() reads; whatever else happens on a bus has another type.
 class JsonFormat final : public RecordFormat {
  public:
-  void frame(Buffer& out, const Received& received) override {
+  JsonFormat(bool with_bus, std::shared_ptr<const Robot> robot)
+      : with_bus_(with_bus), robot_(std::move(robot)) {}
+
+  void frame(Buffer& out, const Origin& from, const Received& received) override {
     JsonMessage json;
     if (to_message(received.frame, json.message) != Status::ok) {
       foreign(out, received);
-      return;
+    } else {
+      json.has_source = true;
+      json.time = received.time;
+      out.append(robot_ ? to_json(json, *robot_) : to_json(json));
     }
-    json.has_source = true;
-    json.time = received.time;
-    const std::string line = to_json(json);
-    out.append(line.data(), line.data() + line.size());
-    out.push_back('\n');
+    end_line(out, from);
   }
-  void lost(Buffer& out, std::uint64_t count) override {
-    fmt::format_to(std::back_inserter(out), "{{\"type\":\"lost\",\"frames\":{}}}\n", count);
-  }
-  void not_shown(Buffer& out, std::uint64_t fd_frames) override {
-    fmt::format_to(std::back_inserter(out), "{{\"type\":\"CAN FD\",\"frames\":{}}}\n", fd_frames);
-  }
-  void state(Buffer& out, BusState state) override {
-    fmt::format_to(std::back_inserter(out), "{{\"type\":\"state\",\"state\":\"{}\"}}\n",
-                   to_string(state));
+
+  bool news(Buffer& out, const Origin& from, const BusNews& news) override {
+    if (news.kind == BusNews::Kind::state) {
+      fmt::format_to(std::back_inserter(out), R"({{"type":"state","state":"{}"}})",
+                     to_string(news.state));
+    } else {
+      fmt::format_to(std::back_inserter(out), R"({{"type":"{}","frames":{}}})",
+                     news.kind == BusNews::Kind::lost ? "lost" : "CAN FD", news.count);
+    }
+    end_line(out, from);
+    return true;
   }
 
  private:
+  // The object ends with its brace.
+  void end_line(Buffer& out, const Origin& from) const {
+    if (with_bus_) {
+      out.resize(out.size() - 1);
+      fmt::format_to(std::back_inserter(out), "{}{}}}", bus_field, Json(from.bus).dump());
+    }
+    out.push_back('\n');
+  }
+
   static void foreign(Buffer& out, const Received& received) {
     const Frame& frame = received.frame;
     const std::size_t bytes = is_remote(frame.kind) ? 0 : std::min<std::size_t>(frame.length, 8);
@@ -64,15 +70,16 @@ class JsonFormat final : public RecordFormat {
             .count();
     fmt::format_to(std::back_inserter(out),
                    "{{\"type\":\"CAN\",\"kind\":\"{}\",\"id\":{},\"length\":{},\"data\":[{}],"
-                   "\"timestamp\":{}.{:06}}}\n",
+                   "\"timestamp\":{}.{:06}}}",
                    kind_name(frame.kind), frame.id, frame.length,
                    fmt::join(frame.data, frame.data + bytes, ","), us / 1'000'000, us % 1'000'000);
   }
+
+  bool with_bus_;
+  std::shared_ptr<const Robot> robot_;
 };
 
 // --- and back ------------------------------------------------------------------------------------
-
-using Json = nlohmann::json;
 
 ParseError field_error(const std::string& name, const std::string& what) {
   return {"JSON field " + quote(name) + ": " + what, 0};
@@ -128,8 +135,22 @@ std::optional<ParseError> read_data(const Json& value, Frame& frame) {
   return std::nullopt;
 }
 
+/// Microseconds, which a double has until the year 2112; none where there is no such time.
+std::optional<Timestamp> read_time(const Json& object) {
+  constexpr double latest_s = 4e9;
+  const auto field = object.find("timestamp");
+  if (field == object.end() || !field->is_number()) {
+    return std::nullopt;
+  }
+  const double seconds = field->get<double>();
+  if (!(seconds >= 0 && seconds <= latest_s)) {
+    return std::nullopt;
+  }
+  return Timestamp(std::chrono::microseconds(std::llround(seconds * 1e6)));
+}
+
 /// A frame that is no message, as JsonFormat::foreign() writes it.
-Parsed<std::optional<Frame>> read_foreign(const Json& object) {
+Parsed<std::optional<JsonFrame>> read_foreign(const Json& object) {
   for (const char* name : {"kind", "id", "length", "data"}) {
     if (!object.contains(name)) {
       return field_error(name, "missing; a frame of type CAN has kind, id, length and data");
@@ -147,7 +168,7 @@ Parsed<std::optional<Frame>> read_foreign(const Json& object) {
                        "expected standard, standard-remote, extended, extended-remote or error");
   }
   if (*kind == FrameKind::error) {
-    return std::optional<Frame>();
+    return std::optional<JsonFrame>();
   }
   const auto id = read_whole(object["id"], max_id(*kind));
   if (!id) {
@@ -161,11 +182,11 @@ Parsed<std::optional<Frame>> read_foreign(const Json& object) {
   if (const auto error = read_data(object["data"], frame)) {
     return *error;
   }
-  return std::optional(frame);
+  return std::optional(JsonFrame{frame, read_time(object)});
 }
 
 /// What is of another type than a message; nothing when it is neither.
-std::optional<Parsed<std::optional<Frame>>> parse_other(std::string_view line) {
+std::optional<Parsed<std::optional<JsonFrame>>> parse_other(std::string_view line) {
   const auto object = read_object(line);
   if (!object || !object->contains("type")) {
     return std::nullopt;
@@ -175,18 +196,35 @@ std::optional<Parsed<std::optional<Frame>>> parse_other(std::string_view line) {
     return read_foreign(*object);
   }
   if (type == "lost" || type == "CAN FD" || type == "state") {
-    return std::optional<Frame>();
+    return std::optional<JsonFrame>();
   }
   return std::nullopt;
 }
 
+/// The line without the bus that it comes from.
+std::string without_bus(std::string_view line) {
+  const std::size_t field = line.rfind(bus_field);
+  const std::size_t brace = line.rfind('}');
+  if (field == std::string_view::npos || brace == std::string_view::npos || brace < field) {
+    return std::string(line);
+  }
+  const std::string_view value =
+      line.substr(field + bus_field.size(), brace - field - bus_field.size());
+  const Json name = Json::parse(value.begin(), value.end(), nullptr, false);
+  return name.is_string() ? std::string(line.substr(0, field)) + std::string(line.substr(brace))
+                          : std::string(line);
+}
+
 }  // namespace
 
-Parsed<std::optional<Frame>> parse_json_line(std::string_view line, Address default_source) {
-  const auto json = parse_json(line);
+Parsed<std::optional<JsonFrame>> parse_json_line(std::string_view named_line,
+                                                 Address default_source, const Robot* robot) {
+  const std::string line = without_bus(named_line);
+  static const Robot nobody;  // names beside the bytes are passed over, as with any robot
+  const auto json = parse_json(line, robot != nullptr ? *robot : nobody);
   if (!json) {
     const auto other = parse_other(line);
-    return other ? *other : Parsed<std::optional<Frame>>(json.error());
+    return other ? *other : Parsed<std::optional<JsonFrame>>(json.error());
   }
   Message message = json->message;
   if (!json->has_source) {
@@ -196,11 +234,11 @@ Parsed<std::optional<Frame>> parse_json_line(std::string_view line, Address defa
   if (to_frame(message, frame) != Status::ok) {
     return ParseError{"expected a message of class message, system or stream", 0};
   }
-  return std::optional(frame);
+  return std::optional(JsonFrame{frame, json->time});
 }
 
-std::unique_ptr<RecordFormat> json_format() {
-  return std::make_unique<JsonFormat>();
+std::unique_ptr<RecordFormat> json_format(bool with_bus, std::shared_ptr<const Robot> robot) {
+  return std::make_unique<JsonFormat>(with_bus, std::move(robot));
 }
 
 }  // namespace roio::cli

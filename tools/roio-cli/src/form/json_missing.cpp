@@ -2,6 +2,7 @@
 #include "form/json_lines.hpp"
 #include "form/record_format.hpp"
 #include "program/exit_status.hpp"
+#include "top/lines.hpp"
 
 namespace roio::cli {
 namespace {
@@ -14,12 +15,14 @@ constexpr const char* no_json = "this roio-cli was built without JSON (ROIO_BUIL
 
 }  // namespace
 
-Parsed<std::optional<Frame>> parse_json_line(std::string_view /*line*/,
-                                             Address /*default_source*/) {
+Parsed<std::optional<JsonFrame>> parse_json_line(std::string_view /*line*/,
+                                                 Address /*default_source*/,
+                                                 const Robot* /*robot*/) {
   return ParseError{no_json, 0};
 }
 
-std::unique_ptr<RecordFormat> json_format() {
+std::unique_ptr<RecordFormat> json_format(bool /*with_bus*/,
+                                          std::shared_ptr<const Robot> /*robot*/) {
   refuse_json();
 }
 
@@ -28,6 +31,10 @@ void append_json(Buffer& /*out*/, const BridgeReport& /*report*/) {
 }
 
 void append_json(Buffer& /*out*/, const BusReport& /*report*/) {
+  refuse_json();
+}
+
+void append_json(Buffer& /*out*/, const Snapshot& /*snapshot*/, const Labels& /*labels*/) {
   refuse_json();
 }
 

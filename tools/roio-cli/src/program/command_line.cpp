@@ -5,11 +5,18 @@
 #include <string_view>
 #include <vector>
 
+#include "ask/words.hpp"
+#include "attach/words.hpp"
 #include "bridge/words.hpp"
 #include "buses/hub_words.hpp"
 #include "dump/words.hpp"
+#include "gen/words.hpp"
+#include "kind/words.hpp"
 #include "program/words.hpp"
+#include "record/play_words.hpp"
+#include "record/record_words.hpp"
 #include "send/words.hpp"
+#include "top/words.hpp"
 
 namespace roio::cli {
 namespace {
@@ -18,9 +25,15 @@ constexpr const char* main_examples = R"(Examples:
   roio-cli dump -n 1 local:robot &             one message, and end
   roio-cli send --wait local:robot 0.2 5A2D00  three bytes to node 2 of subnet 0
   roio-cli dump can0 to=0.2 urgent             urgent messages, on SocketCAN
+  roio-cli ask can0 0.2 01                     a question, and its answer
   roio-cli dump serial:auto                    a bridge on a serial port
+  roio-cli top can0                            who is there, live
+  roio-cli record -o drive.log can0            until Ctrl-C; and back again:
+  roio-cli play drive.log can0
+  roio-cli gen --load 80% can0                 traffic, to try a bus
   roio-cli buses                               what there is to be opened
-  roio-cli bridge attach /dev/ttyACM0 vcan0    a bridge, for every Linux program
+  roio-cli attach serial:/dev/ttyACM0 vcan0    two buses become one
+  roio-cli robot check robot.json              what a robot has
 
 BUS is a CAN interface (can0), serial:DEVICE, a bridge on a serial port, or
 local:NAME, a bus between the programs of one user on this machine;
@@ -41,7 +54,8 @@ constexpr const char* help_examples = R"(Examples:
   roio-cli help send
   roio-cli help bridge set)";
 
-constexpr const char* commands = "send, dump, buses, hub, bridge or help";
+constexpr const char* commands =
+    "send, ask, dump, top, record, play, gen, buses, hub, attach, bridge, kind, robot or help";
 
 /// The words with `help COMMAND` said as `COMMAND --help`.
 std::vector<const char*> with_help(int argc, const char* const* argv) {
@@ -80,17 +94,25 @@ const CLI::App& last_command(const CLI::App& app) {
 
 Command parse_command_line(int argc, const char* const* argv) {
   CLI::App app("Sends and shows Roio messages on a CAN bus, and looks after bridges.");
-  prepare(app, "send|dump|buses|hub|bridge [OPTIONS] ...", main_examples);
+  prepare(app, "COMMAND [OPTIONS] ...", main_examples);
   bool version = false;
   app.add_flag("--version", version, "Print the version and end")->disable_flag_override();
   app.require_subcommand(0, 1);
   const SendWords send_words(app);
+  const AskWords ask_words(app);
   const DumpWords dump_words(app);
+  const TopWords top_words(app);
+  const RecordWords record_words(app);
+  const PlayWords play_words(app);
+  const GenWords gen_words(app);
   CLI::App& buses_app = *app.add_subcommand("buses", "List the buses that can be opened");
   prepare(buses_app, "buses [OPTIONS]", buses_examples);
   const CLI::Option* buses_json = flag(buses_app, "--json", "JSON lines");
   const HubWords hub_words(app);
+  const AttachWords attach_words(app);
   const BridgeWords bridge_words(app);
+  const KindWords kind_words(app);
+  const RobotWords robot_words(app);
   prepare(*app.add_subcommand("help", "Print the help of a command"), "help [COMMAND...]",
           help_examples);
 
@@ -100,6 +122,8 @@ Command parse_command_line(int argc, const char* const* argv) {
   } catch (const CLI::CallForHelp&) {
     refuse_rest(app, "", commands);
     bridge_words.refuse_unknown();
+    kind_words.refuse_unknown();
+    robot_words.refuse_unknown();
     return Information{app.help()};
   } catch (const CLI::ArgumentMismatch& error) {
     refuse_values(app, error.what());
@@ -115,8 +139,23 @@ Command parse_command_line(int argc, const char* const* argv) {
   if (send_words.parsed()) {
     return send_words.parse();
   }
+  if (ask_words.parsed()) {
+    return ask_words.parse();
+  }
   if (dump_words.parsed()) {
     return dump_words.parse();
+  }
+  if (top_words.parsed()) {
+    return top_words.parse();
+  }
+  if (record_words.parsed()) {
+    return record_words.parse();
+  }
+  if (play_words.parsed()) {
+    return play_words.parse();
+  }
+  if (gen_words.parsed()) {
+    return std::visit([](auto options) { return Command(std::move(options)); }, gen_words.parse());
   }
   if (buses_app.parsed()) {
     refuse_rest(buses_app, "buses");
@@ -125,8 +164,17 @@ Command parse_command_line(int argc, const char* const* argv) {
   if (hub_words.parsed()) {
     return hub_words.parse();
   }
+  if (attach_words.parsed()) {
+    return attach_words.parse();
+  }
   if (bridge_words.parsed()) {
     return bridge_words.parse();
+  }
+  if (kind_words.parsed()) {
+    return kind_words.parse();
+  }
+  if (robot_words.parsed()) {
+    return robot_words.parse();
   }
   refuse("", std::string("expected a command: ") + commands);
 }

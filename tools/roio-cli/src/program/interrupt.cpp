@@ -8,8 +8,10 @@
 #include <array>
 #include <atomic>
 #include <cerrno>
-#include <limits>
+#include <ctime>
+#include <optional>
 #include <system_error>
+#include <vector>
 
 #include "program/exit_status.hpp"
 #include "program/process.hpp"
@@ -43,14 +45,32 @@ extern "C" void on_signal(int number) {
   errno = saved_errno;
 }
 
+/// For poll(): rounded up, so that a wait does not spin at its end.
+int poll_ms(std::chrono::steady_clock::time_point until) {
+  const auto left =
+      std::chrono::ceil<std::chrono::milliseconds>(until - std::chrono::steady_clock::now());
+  constexpr std::int64_t longest = std::numeric_limits<int>::max();
+  return static_cast<int>(std::clamp<std::int64_t>(left.count(), 0, longest));
+}
+
+// Waits for a signal, for one of the descriptors (-1: none), or for the time to pass.
 enum class Woken { signal, readable, timeout };
-Woken wait_for(int fd, int timeout_ms) {
-  std::array<pollfd, 2> fds{{{wake_pipe[0], POLLIN, 0}, {fd, POLLIN, 0}}};
-  const int ready = ::poll(fds.data(), fds.size(), timeout_ms);
+Woken wait_for(std::span<const int> descriptors, std::optional<std::chrono::nanoseconds> timeout) {
+  std::vector<pollfd> fds{{wake_pipe[0], POLLIN, 0}};
+  for (const int fd : descriptors) {
+    fds.push_back({fd, POLLIN, 0});
+  }
+  const auto left = timeout.value_or(std::chrono::nanoseconds(0));
+  const auto seconds = std::chrono::duration_cast<std::chrono::seconds>(left);
+  const timespec until{static_cast<std::time_t>(seconds.count()),
+                       static_cast<long>((left - seconds).count())};
+  const int ready = ::ppoll(fds.data(), fds.size(), timeout ? &until : nullptr, nullptr);
   if (caught != 0) {
     return Woken::signal;
   }
-  return ready > 0 && fds[1].revents != 0 ? Woken::readable : Woken::timeout;
+  const bool readable = ready > 0 && std::any_of(fds.begin() + 1, fds.end(),
+                                                 [](const pollfd& fd) { return fd.revents != 0; });
+  return readable ? Woken::readable : Woken::timeout;
 }
 
 }  // namespace
@@ -77,25 +97,42 @@ int Interrupt::signal() noexcept {
 
 bool Interrupt::sleep_until(std::chrono::steady_clock::time_point until) {
   for (;;) {
-    const auto left =
-        std::chrono::ceil<std::chrono::milliseconds>(until - std::chrono::steady_clock::now());
+    const auto left = until - std::chrono::steady_clock::now();
     if (left.count() <= 0) {
       return caught == 0;
     }
-    constexpr std::int64_t longest = std::numeric_limits<int>::max();
-    if (wait_for(-1, static_cast<int>(std::min<std::int64_t>(left.count(), longest))) ==
-        Woken::signal) {
+    if (wait_for({}, left) == Woken::signal) {
       return false;
     }
   }
 }
 
+void Interrupt::also(int number) {
+  catch_interrupt(number, on_signal);
+}
+
+bool Interrupt::wait(std::span<pollfd> fds, std::chrono::steady_clock::time_point until) {
+  std::array<pollfd, max_fds + 1> all{};
+  const std::size_t count = std::min(fds.size(), max_fds);
+  std::copy_n(fds.begin(), count, all.begin());
+  all[count] = {wake_pipe[0], POLLIN, 0};
+  const int ready = ::poll(all.data(), count + 1, poll_ms(until));
+  for (std::size_t i = 0; i < count; ++i) {
+    fds[i].revents = ready > 0 ? all[i].revents : short{0};
+  }
+  return caught == 0;
+}
+
 bool Interrupt::wait_readable(int fd) {
   Woken woken = Woken::timeout;
   while (woken == Woken::timeout) {
-    woken = wait_for(fd, -1);
+    woken = wait_for(std::span(&fd, 1), std::nullopt);
   }
   return woken == Woken::readable;
+}
+
+bool Interrupt::wait_readable(std::span<const int> fds, std::chrono::nanoseconds timeout) {
+  return wait_for(fds, std::max(timeout, std::chrono::nanoseconds(0))) == Woken::readable;
 }
 
 std::unique_ptr<Bus> open_until_signal(const std::string& url, const OpenOptions& options) {

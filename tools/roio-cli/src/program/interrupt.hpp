@@ -3,9 +3,13 @@
 #ifndef ROIO_CLI_INTERRUPT_HPP
 #define ROIO_CLI_INTERRUPT_HPP
 
+#include <poll.h>
+
 #include <chrono>
+#include <cstddef>
 #include <memory>
 #include <roio/bus.hpp>
+#include <span>
 #include <string>
 
 namespace roio::cli {
@@ -25,9 +29,24 @@ class Interrupt {
   /// @return false when a signal ended the wait.
   [[nodiscard]] static bool sleep_until(std::chrono::steady_clock::time_point until);
 
+  /// From now on this signal ends the command, too.
+  static void also(int number);
+
+  /// Waits as poll() does, at most until `until`; another signal's handler ends the wait, too.
+  /// @param fds at most max_fds; their revents are set, or 0.
+  /// @return false when a signal that ends the command ended the wait.
+  static constexpr std::size_t max_fds = 7;
+  [[nodiscard]] static bool wait(std::span<pollfd> fds,
+                                 std::chrono::steady_clock::time_point until);
+
   /// Waits without limit until fd can be read (or is at its end).
   /// @return false when a signal ended the wait.
   [[nodiscard]] static bool wait_readable(int fd);
+
+  /// Waits until one of them can be read, for at most so long.
+  /// @return false when the time has passed or a signal came.
+  [[nodiscard]] static bool wait_readable(std::span<const int> fds,
+                                          std::chrono::nanoseconds timeout);
 };
 
 /// Opens a bus. A signal meanwhile ends the process at once, with 128 and its number: open() may

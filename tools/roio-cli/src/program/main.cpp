@@ -22,17 +22,41 @@ int run(const SendOptions& options) {
   const Interrupt interrupt;
   return send(options);
 }
+int run(const AskOptions& options) {
+  const Interrupt interrupt;
+  return ask(options);
+}
 int run(const DumpOptions& options) {
   const Interrupt interrupt;
   return dump(options);
+}
+int run(const TopOptions& options) {
+  const Interrupt interrupt;
+  return top(options);
+}
+int run(const GenOptions& options) {
+  const Interrupt interrupt;
+  return gen(options);
+}
+int run(const CheckOptions& options) {
+  const Interrupt interrupt;
+  return check(options);
+}
+int run(const RecordOptions& options) {
+  const Interrupt interrupt;
+  return record(options);
+}
+int run(const PlayOptions& options) {
+  const Interrupt interrupt;
+  return play(options);
 }
 int run(const HubOptions& options) {
   const Interrupt interrupt;
   return hub(options);
 }
-int run(const BridgeAttachOptions& options) {
+int run(const AttachOptions& options) {
   const Interrupt interrupt;
-  return bridge_attach(options);
+  return attach(options);
 }
 // What is over in moments is just ended.
 int run(const BusesOptions& options) {
@@ -46,6 +70,15 @@ int run(const BridgeSetOptions& options) {
 }
 int run(const BridgeIdentifyOptions& options) {
   return bridge_identify(options);
+}
+int run(const KindOptions& options) {
+  return make_from_kind(options);
+}
+int run(const RobotDbcOptions& options) {
+  return make_dbc(options);
+}
+int run(const RobotCheckOptions& options) {
+  return check_robot(options);
 }
 
 }  // namespace

@@ -62,9 +62,13 @@ int run_process(std::string_view tool, const std::function<int()>& work) {
   }
 }
 
+void catch_interrupt(int number, void (*handler)(int)) {
+  handle(number, handler, static_cast<int>(SA_RESETHAND));
+}
+
 void catch_interrupts(void (*handler)(int)) {
-  handle(SIGINT, handler, static_cast<int>(SA_RESETHAND));
-  handle(SIGTERM, handler, static_cast<int>(SA_RESETHAND));
+  catch_interrupt(SIGINT, handler);
+  catch_interrupt(SIGTERM, handler);
   handle(SIGPIPE, SIG_IGN, 0);
 }
 

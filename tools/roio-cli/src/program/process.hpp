@@ -14,6 +14,8 @@ int run_process(std::string_view tool, const std::function<int()>& work);
 /// SIGINT and SIGTERM go to the handler, each once: a second one ends the process. SIGPIPE is
 /// ignored, so that writing says it.
 void catch_interrupts(void (*handler)(int));
+/// A further signal, in the same way.
+void catch_interrupt(int number, void (*handler)(int));
 /// From now on these end the process again.
 void release_interrupts();
 

@@ -6,6 +6,8 @@
 #include <utility>
 #include <vector>
 
+#include "program/bitrate.hpp"
+
 namespace roio::cli {
 namespace {
 
@@ -16,11 +18,17 @@ class HelpFormatter final : public CLI::Formatter {
   std::string make_usage(const CLI::App* /*app*/, std::string /*name*/) const override {
     return "Usage: roio-cli " + usage_ + '\n';
   }
-  // A flag that may have a value: CLI11 shows its default in braces.
+  // A flag that may have a value: CLI11 shows its default in braces, and the value's name after it.
   std::string make_option_name(const CLI::Option* option, bool is_positional) const override {
     const std::string name = Formatter::make_option_name(option, is_positional);
     const std::size_t brace = name.find('{');
-    return brace == std::string::npos ? name : name.substr(0, brace) + "[=MS]";
+    return brace == std::string::npos
+               ? name
+               : name.substr(0, brace) + "[=" + option->get_type_name() + "]";
+  }
+  std::string make_option_opts(const CLI::Option* option) const override {
+    const bool is_flag = option->get_items_expected_min() == 0;
+    return is_flag ? "" : Formatter::make_option_opts(option);
   }
 
  private:
@@ -67,6 +75,11 @@ std::chrono::milliseconds parse_ms(const std::string& option, const std::string&
                                    std::uint64_t smallest) {
   constexpr std::uint64_t longest_ms = 24ULL * 60 * 60 * 1000;
   return std::chrono::milliseconds(parse_number(option, text, smallest, longest_ms));
+}
+
+std::uint32_t parse_bitrate(const std::string& text) {
+  return static_cast<std::uint32_t>(
+      parse_number("--bitrate", text, slowest_bitrate_bps, fastest_bitrate_bps));
 }
 
 std::string parse_bus(const std::string& text) {

@@ -29,6 +29,8 @@ std::uint64_t parse_number(const std::string& option, const std::string& text,
 /// Up to a day.
 std::chrono::milliseconds parse_ms(const std::string& option, const std::string& text,
                                    std::uint64_t smallest);
+/// Of a bus, in bit/s.
+std::uint32_t parse_bitrate(const std::string& text);
 /// @return the text: the name of a bus, as open() takes it.
 std::string parse_bus(const std::string& text);
 

@@ -4,7 +4,9 @@
 #include <system_error>
 
 #include "form/record_format.hpp"
+#include "program/exit_status.hpp"
 #include "program/interrupt.hpp"
+#include "program/output.hpp"
 
 namespace roio::cli {
 namespace {
@@ -66,6 +68,21 @@ std::string why_not_sent(Bus& bus, std::chrono::milliseconds timeout, std::uint6
   bus.close();
   const std::uint64_t sent = bridge != nullptr ? bridge->line_counters().sent : accepted;
   return bus.name() + ": not sent" + reason + "; " + count_of(sent, "message") + " sent before";
+}
+
+void finish_sending(Bus& bus, std::chrono::milliseconds timeout, std::uint64_t accepted) {
+  wait_for_outcomes(bus);
+  if (has_given_up(bus)) {
+    throw Failure(why_not_sent(bus, timeout, accepted));
+  }
+  bus.close();
+  if (const std::uint64_t unheard = bus.statistics().unheard; unheard > 0) {
+    note(bus.name() + ": nobody else was there to have " + count_of(unheard, "message"));
+  }
+  if (const std::uint64_t unsent = bus.statistics().unsent; unsent > 0) {
+    throw Failure(bus.name() + ": " + count_of(unsent, "message") +
+                  " not handed over before the bus closed");
+  }
 }
 
 }  // namespace roio::cli

@@ -23,6 +23,11 @@ void wait_for_outcomes(Bus& bus);
 /// acknowledges, the bus is error-passive; 0 messages sent before".
 std::string why_not_sent(Bus& bus, std::chrono::milliseconds timeout, std::uint64_t accepted);
 
+/// Waits for what is known of the last messages, closes the bus, and tells on standard error how
+/// many nobody else was there to have.
+/// @throws Failure: some were given up, or not handed over.
+void finish_sending(Bus& bus, std::chrono::milliseconds timeout, std::uint64_t accepted);
+
 }  // namespace roio::cli
 
 #endif

@@ -4,10 +4,12 @@
 
 #include <chrono>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <roio/address.hpp>
 #include <roio/bus.hpp>
 #include <roio/frame.hpp>
+#include <roio/robot.hpp>
 #include <string>
 
 namespace roio::cli {
@@ -17,6 +19,7 @@ inline constexpr Address default_source{0, 10};
 
 struct SendOptions {
   std::string bus;
+  std::shared_ptr<const Robot> robot;  ///< Whose names lines may have; null: none.
   std::optional<Frame> frame;  ///< None: lines from standard input.
   Address source = default_source;
   std::uint64_t count = 1;  ///< Times the message goes out; 0: until a signal.

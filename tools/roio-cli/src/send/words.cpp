@@ -5,9 +5,10 @@
 #include <roio/candump_log.hpp>
 #include <roio/message.hpp>
 #include <roio/text.hpp>
-#include <span>
+#include <utility>
 
 #include "program/words.hpp"
+#include "send/message_words.hpp"
 
 namespace roio::cli {
 namespace {
@@ -29,55 +30,14 @@ where they go. A line that cannot be understood is named on standard error, the
 others are sent, and the exit status is 1. Quote '0.*' for the shell, or write
 0.255. A local bus on which nobody listens is told on standard error.)";
 
-constexpr const char* empty_message = "; without DATA the message is empty";
-
-Bytes parse_decimal(std::span<const std::string> words) {
-  if (words.empty()) {
-    throw UsageError(std::string("--dec: expected 1 to 8 numbers 0..255 after DEST") +
-                     empty_message);
-  }
-  Bytes bytes;
-  if (words.size() > bytes.data.size()) {
-    throw UsageError("DATA: expected at most 8 bytes, found " + std::to_string(words.size()));
-  }
-  for (const std::string& word : words) {
-    bytes.data[bytes.length++] =
-        static_cast<std::uint8_t>(parse_number("DATA with --dec", word, 0, 255));
-  }
-  return bytes;
-}
-
-// In one word, or in several, as dump prints them.
-Bytes parse_hexadecimal(std::span<const std::string> words) {
-  std::string text;
-  for (const std::string& word : words) {
-    if (word.empty()) {
-      throw UsageError(std::string("DATA: expected hexadecimal digits such as 5A2D00, found \"\"") +
-                       empty_message);
-    }
-    text += (text.empty() ? "" : " ") + word;
-  }
-  return value_or_refuse(parse_hex(text));
-}
-
-MessageClass parse_sendable_class(const std::string& text) {
-  const auto message_class = parse_class(text);
-  if (!message_class || *message_class == MessageClass::reserved) {
-    throw UsageError("--class: expected message, system or stream, found " + quote(text));
-  }
-  return *message_class;
-}
-
-bool is_frame(const std::string& destination) {
-  return destination.find('#') != std::string::npos;
-}
-
 }  // namespace
 
 SendWords::SendWords(CLI::App& program)
     : app_(program.add_subcommand("send", "Send a message, or lines of them")),
+      robot_(*app_),
       dec_(flag(*app_, "--dec", "DATA are decimal numbers, one a byte: 90 45 0")),
-      from_(option(*app_, "--from", from_text_, "SUBNET.NODE", "Source address (default 0.10)")),
+      from_(option(*app_, "--from", from_text_, "ADDRESS",
+                   "Who sends, SUBNET.NODE or a place (default 0.10)")),
       urgent_(flag(*app_, "--urgent", "Ahead of normal messages")),
       message_class_(
           option(*app_, "--class", class_text_, "NAME", "message (default), system or stream")),
@@ -91,14 +51,15 @@ SendWords::SendWords(CLI::App& program)
   without_type(app_->add_option("DATA", data_, "1 to 8 bytes in hexadecimal: 5A2D00"));
   option(*app_, "--timeout", timeout_text_, "MS",
          "Longest wait of a message for the bus (default 1000)");
-  wait_ = app_->add_flag("--wait{10000}", wait_text_, "Wait until somebody listens on a local bus");
+  wait_ = app_->add_flag("--wait{10000}", wait_text_, "Wait until somebody listens on a local bus")
+              ->type_name("MS");
 }
 
-SendOptions SendWords::parse_options() const {
+SendOptions SendWords::parse_options(const Robot* robot) const {
   constexpr std::uint64_t most = std::numeric_limits<std::uint32_t>::max();
   SendOptions options;
   if (from_->count() > 0) {
-    options.source = value_or_refuse(parse_source(from_text_), "--from: ");
+    options.source = parse_sender(robot, from_text_, "--from: ");
   }
   options.count = parse_number("--count", count_text_, 0, most);
   options.interval = parse_ms("--interval", interval_text_, 0);
@@ -113,31 +74,35 @@ SendOptions SendWords::parse_options() const {
 SendOptions SendWords::parse() const {
   refuse_rest(*app_, "send");
   // First the options: in `send --count local:robot 0.2`, what is wrong is not that BUS is missing.
-  SendOptions options = parse_options();
-  if (bus_.empty()) {
+  auto robot = robot_.find();
+  SendOptions options = parse_options(robot.get());
+  const MessageWords words = sort_words(robot.get(), {bus_, destination_, data_});
+  options.robot = std::move(robot);
+  if (words.bus.empty()) {
     refuse("send", "expected BUS, DEST and DATA");
   }
-  if (destination_.empty()) {
-    refuse("send", "expected DEST after BUS: SUBNET.NODE, SUBNET.*, ID#DATA or -");
+  if (words.destination.empty()) {
+    refuse("send", "expected DEST after BUS: a place, SUBNET.NODE, SUBNET.*, ID#DATA or -");
   }
-  options.bus = parse_bus(bus_);
-  if (options.wait && parse_bus_url(bus_)->kind != BusUrl::Kind::local) {
-    throw UsageError("--wait: expected with local:NAME alone; on " + bus_ +
+  options.bus = parse_bus(words.bus);
+  if (options.wait && parse_bus_url(words.bus)->kind != BusUrl::Kind::local) {
+    throw UsageError("--wait: expected with local:NAME alone; on " + words.bus +
                      " nobody can tell who listens");
   }
-  if (destination_ == "-") {
-    refuse_with("DEST -", "each line of the input", true);
+  if (words.destination == "-") {
+    refuse_with(words, "DEST -", "each line of the input", true);
     return options;
   }
   if (interval_->count() > 0 && count_->count() == 0) {
     throw UsageError("--interval: expected with --count N (0: until interrupted)");
   }
-  options.frame = is_frame(destination_) ? parse_frame() : parse_message(options.source);
+  options.frame = is_frame(words.destination) ? parse_frame(words) : parse_message(words, options);
   return options;
 }
 
 // Which options make no sense with what says everything itself.
-void SendWords::refuse_with(const char* what, const char* who, bool count_too) const {
+void SendWords::refuse_with(const MessageWords& said, const char* what, const char* who,
+                            bool count_too) const {
   std::vector<const CLI::Option*> options{dec_, urgent_, message_class_};
   options.push_back(count_too ? count_ : from_);
   for (const CLI::Option* option : options) {
@@ -146,29 +111,29 @@ void SendWords::refuse_with(const char* what, const char* who, bool count_too) c
                        " says its own");
     }
   }
-  if (!data_.empty()) {
+  if (!said.data.empty()) {
     throw UsageError(std::string("DATA: expected none after ") + what + ", as " + who +
                      " has its own");
   }
 }
 
-Frame SendWords::parse_frame() const {
-  const Frame frame = value_or_refuse(parse_frame_text(destination_));
+Frame SendWords::parse_frame(const MessageWords& said) const {
+  const Frame frame = value_or_refuse(parse_frame_text(said.destination));
   if (frame.kind == FrameKind::error) {
-    throw UsageError("frame " + quote(destination_) +
+    throw UsageError("frame " + quote(said.destination) +
                      ": a controller's error report; expected a frame to send");
   }
-  refuse_with("ID#DATA", "the frame", false);
+  refuse_with(said, "ID#DATA", "the frame", false);
   return frame;
 }
 
-Frame SendWords::parse_message(Address source) const {
+Frame SendWords::parse_message(const MessageWords& said, const SendOptions& options) const {
   Message message{};
-  message.header.destination = value_or_refuse(parse_address(destination_));
-  message.header.source = source;
+  message.header.destination = parse_destination(options.robot.get(), said.destination);
+  message.header.source = options.source;
   message.header.priority = urgent_->count() > 0 ? Priority::urgent : Priority::normal;
   message.header.message_class = parse_sendable_class(class_text_);
-  const Bytes bytes = dec_->count() > 0 ? parse_decimal(data_) : parse_hexadecimal(data_);
+  const Bytes bytes = parse_data(options.robot.get(), message.header, said.data, dec_->count() > 0);
   message.length = bytes.length;
   std::copy(bytes.data.begin(), bytes.data.end(), message.data);
   Frame frame{};

@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "names/option.hpp"
+#include "send/message_words.hpp"
 #include "send/send.hpp"
 
 namespace roio::cli {
@@ -23,16 +25,18 @@ class SendWords {
   [[nodiscard]] SendOptions parse() const;
 
  private:
-  [[nodiscard]] SendOptions parse_options() const;
-  [[nodiscard]] Frame parse_message(Address source) const;
-  [[nodiscard]] Frame parse_frame() const;
-  void refuse_with(const char* what, const char* who, bool count_too) const;
+  [[nodiscard]] SendOptions parse_options(const Robot* robot) const;
+  [[nodiscard]] Frame parse_message(const MessageWords& said, const SendOptions& options) const;
+  [[nodiscard]] Frame parse_frame(const MessageWords& said) const;
+  void refuse_with(const MessageWords& said, const char* what, const char* who,
+                   bool count_too) const;
 
   std::string bus_, destination_, from_text_;
   std::string class_text_ = "message";
   std::string count_text_ = "1", interval_text_ = "0", timeout_text_ = "1000", wait_text_;
   std::vector<std::string> data_;
   CLI::App* app_;
+  RobotOption robot_;
   CLI::Option* dec_;
   CLI::Option* from_;
   CLI::Option* urgent_;

@@ -1,0 +1,29 @@
+#include "names/option.hpp"
+
+#include <optional>
+#include <roio/text.hpp>
+
+#include "names/robot.hpp"
+#include "program/words.hpp"
+
+namespace roio::cli {
+
+RobotOption::RobotOption(CLI::App& command)
+    : option_(option(command, "--robot", text_, "FILE",
+                     "Robot file with the names (or none); see below")) {
+}
+
+std::shared_ptr<const Robot> RobotOption::find() const {
+  return find_robot(option_->count() > 0 ? std::optional(text_) : std::nullopt);
+}
+
+Address parse_destination(const Robot* robot, const std::string& text) {
+  return value_or_refuse(address_of(robot, text));
+}
+
+Address parse_sender(const Robot* robot, const std::string& text, const char* option) {
+  const Address address = value_or_refuse(address_of(robot, text), option);
+  return is_broadcast(address) ? value_or_refuse(parse_source(text), option) : address;
+}
+
+}  // namespace roio::cli
