@@ -7,6 +7,7 @@
 
 #include "parsing.hpp"
 #include "random_kind.hpp"
+#include "random_value.hpp"
 #include "seed.hpp"
 
 namespace roio {
@@ -51,51 +52,14 @@ std::string bits_of(const Bytes& bytes) {
   return bits;
 }
 
-/// A value that the field holds, often at one of its ends.
-Reading random_value(const Field& field, std::mt19937& random) {
-  Reading reading{&field};
-  const std::int64_t last = field.form == Field::Form::choice
-                                ? static_cast<std::int64_t>(field.choices.size()) - 1
-                                : field.maximum;
-  const std::int64_t first = field.minimum;
-  switch (test::up_to(random, 3)) {
-    case 0:
-      reading.raw = first;
-      break;
-    case 1:
-      reading.raw = last;
-      break;
-    default:
-      reading.raw = first + test::up_to(random, static_cast<std::uint32_t>(last - first));
-  }
-  if (field.form == Field::Form::bytes) {
-    reading.bytes.length = static_cast<std::uint8_t>(reading.raw);
-    for (unsigned i = 0; i < reading.bytes.length; ++i) {
-      reading.bytes.data[i] = static_cast<std::uint8_t>(test::up_to(random, 255));
-    }
-  }
-  return reading;
-}
-
-FieldValue value_of(const Reading& reading) {
-  switch (reading.field->form) {
-    case Field::Form::bytes:
-      return reading.bytes;
-    case Field::Form::choice:
-      return reading.text();
-    default:
-      return reading.value();
-  }
-}
-
 /// Packed as the values are, and as a person types what is shown of them.
 void check_message(const MessageKind& message, std::mt19937& random) {
   std::vector<Reading> values;
   std::vector<NamedValue> said;
   std::vector<NamedValue> typed;
   for (const Field& field : message.fields) {
-    values.push_back(random_value(field, random));
-    said.push_back({field.name, value_of(values.back())});
+    values.push_back(test::random_value(field, random));
+    said.push_back({field.name, test::value_of(values.back())});
     const auto read = parse_value(field, values.back().text());
     ASSERT_EQ(test::verdict(read), "ok") << values.back().text();
     typed.push_back({field.name, *read});

@@ -136,9 +136,13 @@ void put_message(Json& object, Address source, Address destination, const Bytes&
 
 /// @param object has names; without them on success.
 std::optional<ParseError> resolve(const Robot& robot, Json& object) {
+  const bool has_source = object.contains("from");
   const auto source = take_address(robot, object, "from");
   if (!source) {
     return source.error();
+  }
+  if (has_source && is_broadcast(*source)) {
+    return error_in("from", "a broadcast; expected a place or SUBNET.NODE");
   }
   if (!object.contains("to")) {
     return error_in("to", "missing; expected a place or SUBNET.NODE");

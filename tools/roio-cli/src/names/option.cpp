@@ -10,8 +10,7 @@ namespace roio::cli {
 
 RobotOption::RobotOption(CLI::App& command)
     : option_(option(command, "--robot", text_, "FILE",
-                     "Robot file with the names (or none); see below")) {
-}
+                     "Robot file with the names (or none); see below")) {}
 
 std::shared_ptr<const Robot> RobotOption::find() const {
   return find_robot(option_->count() > 0 ? std::optional(text_) : std::nullopt);

@@ -20,7 +20,7 @@ inline constexpr Address default_source{0, 10};
 struct SendOptions {
   std::string bus;
   std::shared_ptr<const Robot> robot;  ///< Whose names lines may have; null: none.
-  std::optional<Frame> frame;  ///< None: lines from standard input.
+  std::optional<Frame> frame;          ///< None: lines from standard input.
   Address source = default_source;
   std::uint64_t count = 1;  ///< Times the message goes out; 0: until a signal.
   std::chrono::milliseconds interval{0};
