@@ -5,6 +5,7 @@
 #include <fstream>
 #include <iterator>
 #include <roio/robot.hpp>
+#include <roio/robot_json.hpp>
 
 #include "folder.hpp"
 #include "parsing.hpp"
@@ -58,9 +59,11 @@ TEST(Shipped, TheDocumentsExamples) {
     at += 9;
     blocks.push_back(text.substr(at, text.find("\n```", at) - at));
   }
-  ASSERT_EQ(blocks.size(), 2U);
+  ASSERT_EQ(blocks.size(), 3U);
   EXPECT_EQ(verdict(parse_kind(blocks[0], "document")), "ok");
   EXPECT_EQ(verdict(robot_file::parse_robot(blocks[1], source_dir / "robot.json", {})), "ok");
+  const auto arm = load_robot(source_dir / "examples" / "arm-robot" / "robot.json");
+  EXPECT_EQ(verdict(parse_json(blocks[2], *arm)), "ok");
 }
 
 TEST(Shipped, ArmRobot) {
