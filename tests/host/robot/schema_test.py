@@ -69,6 +69,8 @@ class Document(unittest.TestCase):
     def test_its_files(self):
         for block in self.blocks("json"):
             file = json.loads(block)
+            if "roio" not in file:  # a message
+                continue
             with self.subTest(file=file):
                 validator("kind" if "kind" in file else "robot").validate(file)
 

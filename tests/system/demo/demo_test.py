@@ -29,6 +29,7 @@ class DemoTest(unittest.TestCase):
         (self.folder / "bus").mkdir(mode=0o700)
         shutil.copy(SOURCE / "scripts/demo", self.folder / "scripts")
         (self.folder / "build/release/firmware/uno").symlink_to(os.environ["ROIO_IMAGES"] + "/uno")
+        (self.folder / "examples").symlink_to(SOURCE / "examples")
         self.program("scripts/setup", "true")
         self.program("path/cmake", "true")
         self.program("build/bin/roio-sim", f'exec "{os.environ["ROIO_SIM"]}" "$@"')

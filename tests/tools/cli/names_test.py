@@ -3,8 +3,9 @@
 
 import json
 import os
+import subprocess
 
-from driver import CliTest, main
+from driver import CLI, GUARD, CliTest, main
 
 KIND = {
     "roio": 1,
@@ -106,6 +107,10 @@ class NamesTest(CliTest):
              "roio-cli: speed.speed: 0.25 m/s is between two steps; expected 0.2 or 0.3"),
             ("arm speed speed=1 gear=third",
              'roio-cli: speed.gear: "third"; expected one of low, high'),
+            ("local:robot 0.300 01",
+             'roio-cli: address "0.300": node 300 is out of range; expected 0..254, or * for a broadcast'),
+            ("arm 5A2", 'roio-cli: data "5A2": odd number of hex digits; expected two per byte'),
+            ("arm 5G", 'roio-cli: data "5G": "G" is no hex digit'),
             ("arm refusals 1",
              'roio-cli: refusals: expected FIELD=VALUE, found "1"; it has no fields'),
         ]:
@@ -195,6 +200,31 @@ class NamesTest(CliTest):
         self.assertEqual(again.result()[1],
                          "pc     -> arm     normal  speed     speed=-0.3 m/s  gear=high\n"
                          "pc     -> arm     normal  refusals\n")
+
+    def start(self, *words):
+        process = subprocess.Popen([CLI, *words], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+        self.addCleanup(process.communicate)
+        self.addCleanup(process.kill)
+        return process
+
+    def test_top_has_names(self):
+        top = self.start("top", "-n", "1", "--interval", "1000")
+        self.send("--wait", "arm", "speed", "speed=-0.3", "gear=high")
+        out, err = top.communicate(timeout=GUARD)
+        self.assertEqual(err, "")
+        rows = [json.loads(line) for line in out.splitlines()]
+        self.assertEqual(
+            [(row["from"], row["to"], row["message"], row["fields"]) for row in rows if row["type"] == "row"],
+            [("pc", "arm", "speed", "speed=-0.3 m/s  gear=high")])
+
+    def test_ask_has_names(self):
+        dump = self.dump("-n", "1", "to=arm")
+        ask = self.start("ask", "--timeout", "60000", "arm", "refusals")
+        self.assertEqual(dump.result()[1], "pc     -> arm     normal  refusals\n")
+        self.send("--from", "arm", "pc", "refusals", "count=258")
+        self.assertEqual(ask.communicate(timeout=GUARD)[0], "arm    -> pc      normal  refusals  count=258\n")
+        self.assertEqual(self.run_cli("ask", "--timeout", "1", "arm", "refusals")[2],
+                         "roio-cli: local:robot: no answer from arm within 1 ms: nobody else is on the bus\n")
 
     def test_lines_of_json_have_names(self):
         dump = self.dump("--robot", "none", "-n", "3", "local:robot")

@@ -1,9 +1,17 @@
 #include "names/named_data.hpp"
 
+#include <string_view>
 #include <vector>
 
 namespace roio::cli {
 namespace {
+
+// Also such as are wrong: what is said of them then speaks of bytes.
+bool is_meant_as_bytes(std::string_view word) {
+  constexpr std::string_view of_bytes = "0123456789abcdefABCDEF. -";
+  return word.find_first_not_of(of_bytes) == std::string_view::npos ||
+         (word.front() >= '0' && word.front() <= '9');
+}
 
 std::string fields_of(const MessageKind& message) {
   std::string names;
@@ -43,8 +51,8 @@ Parsed<std::optional<Bytes>> parse_named_data(const Robot& robot, Address source
   }
   const auto message = robot.message(source, destination, words.front());
   if (!message) {
-    return parse_hex(words.front()) ? Parsed<std::optional<Bytes>>(std::optional<Bytes>())
-                                    : Parsed<std::optional<Bytes>>(message.error());
+    return is_meant_as_bytes(words.front()) ? Parsed<std::optional<Bytes>>(std::optional<Bytes>())
+                                            : Parsed<std::optional<Bytes>>(message.error());
   }
   std::vector<NamedValue> values;
   for (const std::string& word : words.subspan(1)) {

@@ -2,6 +2,7 @@
 
 #include <optional>
 
+#include "listen/bus_words.hpp"
 #include "names/named_data.hpp"
 #include "names/option.hpp"
 #include "names/robot.hpp"
@@ -50,7 +51,8 @@ bool is_destination(const Robot* robot, const std::string& word) {
 MessageWords sort_words(const Robot* robot, const MessageWords& words) {
   const bool may_be_left_out = robot != nullptr && !robot->bus.empty() && !words.bus.empty();
   if (!may_be_left_out || !is_destination(robot, words.bus)) {
-    if (may_be_left_out && !is_destination(robot, words.destination)) {
+    if (may_be_left_out && !looks_like_bus(words.bus) &&
+        !is_destination(robot, words.destination)) {
       static_cast<void>(parse_destination(robot, words.bus));  // neither is: the first is misspelt
     }
     return words;
