@@ -118,7 +118,7 @@ TEST_F(Finding, AFileOfThatNameThatIsNotOurs) {
       {"ours, and nothing in it", R"({"roio": null})", true},
       {"ours, with a slip of the pen: that is to be said", R"({"roio": 1,})", true},
       {"ours, cut off", "{\n  \"roio\": 1,\n  \"name\": \"r", true},
-      {"too large to be ours", "{\"roio\": 1}" + std::string(1048576, ' '), false},
+      {"too large to be read: that is to be said", std::string(1048577, ' '), true},
   };
   for (const auto& row : rows) {
     write("a/robot.json", row.text);
@@ -126,6 +126,20 @@ TEST_F(Finding, AFileOfThatNameThatIsNotOurs) {
     ASSERT_TRUE(found) << row.why;
     EXPECT_EQ(found->parent_path().filename() == "a", row.is_ours) << row.why;
   }
+}
+
+TEST_F(Finding, AFileThatCannotBeRead) {
+  fs::create_directories("a/robot.json");
+  write("robot.json", robot_text);
+  EXPECT_EQ(find_robot_file("a"), fs::absolute("robot.json")) << "a folder is passed over";
+  fs::remove("a/robot.json");
+  fs::create_symlink("nowhere", "a/robot.json");
+  EXPECT_EQ(find_robot_file("a"), fs::absolute("robot.json")) << "a link that leads nowhere, too";
+  fs::remove("a/robot.json");
+  write("a/robot.json", robot_text);
+  fs::permissions("a/robot.json", fs::perms::none);
+  // root may read all the same
+  EXPECT_EQ(find_robot_file("a"), fs::absolute("a/robot.json"));
 }
 
 }  // namespace

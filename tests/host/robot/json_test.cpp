@@ -102,13 +102,121 @@ TEST(NamedJson, IsRefusedByTheNameOfTheField) {
            Row{R"({"type":"Roio","to":"arm","message":"raw","fields":{"data":[256]}})",
                R"(JSON field "fields.data": expected an array)"},
            Row{R"({"type":"Roio","to":"arm","message":"stop","wings":2})", R"(JSON field "wings")"},
-           Row{R"({"type":"Roio","to":"arm","to":"leg","message":"stop"})", "JSON"},
+           Row{R"({"type":"Roio","to":"arm","to":"leg","message":"stop"})",
+               R"(JSON field "to": given twice; expected once)"},
+           Row{R"({"type":"Roio","to":"arm","message":"go","fields":{"gear":1,"gear":1}})",
+               R"(JSON field "fields.gear": given twice; expected once)"},
+           Row{R"({"type":"Roio","to":"arm","message":stop})", "JSON: not valid at byte 36"},
+           Row{R"({"type":"Roio","to":"arm","message":"stop"} x)",
+               R"(JSON: not valid at byte 44: "x")"},
+           Row{R"({"type":"Roio","to":"arm")", "JSON: ends too early, after 25 bytes"},
+           Row{R"({"type":"Roio","to":"arm","message":"go","fields":{"speed":1e999}})",
+               "JSON: a number out of range"},
+           Row{R"({"type":"Roio","to":[],"message":"go"})",
+               R"(JSON field "to": an array; expected)"},
+           Row{R"({"type":"Roio","to":"arm","message":"go","fields":{"a\nb":null}})",
+               R"(JSON field "fields.a\nb": null; expected)"},
+           Row{R"({"type":"Roio","to":"arm","message":"raw","fields":{"data":[[1]]}})",
+               "JSON: nested deeper"},
+           Row{R"({"type":"Roio","to":"arm","message":"stop","isBroadcast":false})",
+               R"(JSON field "isBroadcast": expected none beside "to")"},
+           Row{R"({"type":"Roio","to":"arm","message":"stop","address":3})",
+               R"(JSON field "address": expected none)"},
+           Row{R"({"type":"Roio","to":"arm","message":"stop","subnet":3})",
+               R"(JSON field "subnet": expected none)"},
+           Row{R"({"type":"Roio","to":"arm","message":"stop","messageLength":3})",
+               R"(JSON field "messageLength": expected none)"},
+           Row{R"({"type":"Roio","to":"arm","message":"stop","source":"0.3"})",
+               R"(JSON field "source": expected none)"},
+           Row{R"({"type":"Roio","to":"arm","message":"stop","destination":"0.3"})",
+               R"(JSON field "destination": expected none)"},
+           Row{R"({"type":"Roio","to":"arm","message":"stop","class":"stream"})",
+               R"(JSON field "class": "stream"; expected "message")"},
            Row{R"({"to":"arm","message":"stop"})", R"(JSON field "type")"},
        }) {
     const auto json = parse_json(row.text, robot);
     ASSERT_FALSE(json) << row.text;
     EXPECT_TRUE(json.error().message.starts_with(row.begin)) << json.error().message;
   }
+}
+
+// As without names; only that there may be more of it.
+TEST(NamedJson, IsRefusedAsATextBeforeItIsRead) {
+  const Robot robot = robot_of(example_kind());
+  const std::string message = R"({"type":"Roio","to":"arm","message":"stop"})";
+  const std::string padding(16384 - message.size(), ' ');
+  const auto longest = parse_json(message + padding, robot);
+  EXPECT_TRUE(longest) << longest.error().message;
+  const std::string open(8000, '[');
+  const struct {
+    const char* why;
+    std::string text;
+    std::string begin;
+  } rows[] = {
+      {"too long", message + padding + ' ', "JSON: 16385 bytes; expected at most"},
+      {"too long to be read as bytes, with a zero byte", message + padding.substr(1) + '\0',
+       "JSON: a zero byte at byte 16383"},
+      {"the same, not UTF-8", message + padding.substr(1) + '\xFF',
+       "JSON: not UTF-8 at byte 16383"},
+      {"the same, a mark", "\xEF\xBB\xBF" + message + padding.substr(3),
+       "JSON: begins with a byte"},
+      {"a zero byte", message + '\0', "JSON: a zero byte"},
+      {"depth", R"({"to":"arm","fields":)" + open + std::string(8000, ']') + '}',
+       "JSON: nested deeper than a message ever is"},
+      {"depth without an end", R"({"to":"arm","fields":)" + open, "JSON: nested deeper"},
+      {"depth beside bytes", R"({"to":"arm","data":)" + open, "JSON: nested deeper"},
+  };
+  for (const auto& row : rows) {
+    const auto json = parse_json(row.text, robot);
+    ASSERT_FALSE(json) << row.why;
+    EXPECT_TRUE(json.error().message.starts_with(row.begin)) << row.why << json.error().message;
+  }
+}
+
+/// "a" says "status", in the same byte in which "b" hears "go" and "halt" of two.
+Robot talking_robot() {
+  Robot robot = robot_of(*parse_kind(R"({"roio": 1, "kind": "k", "hears": {
+      "go": {"fields": [{"name": "x", "type": "u8"}]},
+      "halt": {"fields": [{"name": "x", "type": "u16"}]}},
+    "says": {"status": {"fields": [{"name": "x", "type": "u8"}]}}})",
+                                     "k.kind.json"));
+  robot.places.push_back({"zero", "", {0, 0}, robot.places[0].kind, {}, std::nullopt});
+  return robot;
+}
+
+TEST(NamedJson, IsLookedUpAsFromWhoSendsIt) {
+  const Robot robot = talking_robot();
+  const std::string status = R"({"type":"Roio","to":"pc","message":"status","fields":{"x":1}})";
+  EXPECT_FALSE(parse_json(status, robot)) << "from nobody";
+  const auto of_default = parse_json(status, robot, {0, 2});
+  ASSERT_TRUE(of_default) << of_default.error().message;
+  EXPECT_FALSE(of_default->has_source);
+  const std::string from = status.substr(0, status.size() - 1) + R"(,"from":"pc"})";
+  EXPECT_FALSE(parse_json(from, robot, {0, 2})) << "who it says goes before";
+}
+
+TEST(NamedJson, IsRefusedWhereItsBytesMeanSomethingElse) {
+  const Robot robot = talking_robot();
+  const std::string go = R"({"type":"Roio","to":"leg","message":"go","fields":{"x":1})";
+  EXPECT_TRUE(parse_json(go + '}', robot));
+  EXPECT_TRUE(parse_json(go + R"(,"from":"pc"})", robot));
+  const auto json = parse_json(go + R"(,"from":"arm"})", robot);
+  ASSERT_FALSE(json);
+  EXPECT_EQ(json.error().message, R"(JSON field "message": go: from arm these bytes are status)");
+  EXPECT_TRUE(parse_json(
+      R"({"type":"Roio","from":"arm","to":"leg","message":"halt","fields":{"x":1}})", robot));
+}
+
+// 0.0 may be a place, and has a kind here that says the same byte.
+TEST(NamedJson, OfNobodyIsNotWrittenAsFromAPlace) {
+  const Robot robot = talking_robot();
+  JsonMessage json;
+  json.message = Message{{Priority::normal, MessageClass::message, {0, 2}, {0, 0}}, 1, {1}};
+  EXPECT_TRUE(to_json(json, robot).ends_with(R"("to":"arm","message":"go","fields":{"x":1}})"))
+      << to_json(json, robot);
+  json.has_source = true;
+  EXPECT_TRUE(to_json(json, robot).ends_with(R"("message":"status","fields":{"x":1}})"))
+      << to_json(json, robot);
 }
 
 TEST(NamedJson, IsWrittenBesideTheBytes) {

@@ -167,7 +167,7 @@ TEST_F(RobotNames, MessagesByName) {
       {"all mean alike", pc, all, "stop", "none"},
       {"only wheels", pc, all, "turn", "angle"},
       {"the disagreement names two", pc, all, "set",
-       R"("set": left and lamp mean different bytes by it; expected a message to one of them)"},
+       R"("set": left and lamp mean different things by it; expected a message to one of them)"},
       {"a slip of the pen", pc, left, "strop",
        R"("strop": no such message to left; did you mean "stop"?)"},
       {"none like it", pc, left, "fly",
@@ -220,6 +220,10 @@ TEST_F(RobotNames, BroadcastsMeanTheSameOrNothing) {
       {"the place in the byte", R"({"name": "x", "type": "bits"}, {"name": "y", "type": "bits"})",
        R"({"name": "y", "type": "bits"}, {"name": "x", "type": "bits"})", false},
       {"no choices", choice, choice, true},
+      {"the order of the choices", choice,
+       R"({"name": "x", "type": "enum", "values": {"on": 1, "off": 0}})", true},
+      {"the other order", choice, R"({"name": "x", "type": "enum", "values": {"off": 0, "on": 1}})",
+       true},
       {"a choice", choice, R"({"name": "x", "type": "enum", "values": {"on": 1, "no": 0}})", false},
       {"a choice's number", choice,
        R"({"name": "x", "type": "enum", "values": {"on": 2, "off": 0}})", false},
@@ -243,11 +247,12 @@ TEST_F(RobotNames, Encode) {
   EXPECT_EQ(message->header.message_class, MessageClass::message);
   EXPECT_EQ(message->header.destination, left);
   EXPECT_EQ(to_hex(message->data, message->length), "FFFE");
+  EXPECT_EQ(message->header.source, broadcast_of(0)) << "nobody; 0.0 may be a place";
   EXPECT_EQ(verdict(robot.encode("0.1", "set", {{"speed", 1}})), "ok") << "by its address";
   EXPECT_EQ(robot.encode("0.*", "stop", {})->header.destination, all);
   EXPECT_EQ(
       verdict(robot.encode("0.*", "set", {{"speed", 1}})),
-      R"("set": left and lamp mean different bytes by it; expected a message to one of them)");
+      R"("set": left and lamp mean different things by it; expected a message to one of them)");
   EXPECT_EQ(verdict(robot.encode("leftt", "set", {})),
             R"("leftt": no such place; did you mean "left"?)");
   EXPECT_EQ(verdict(robot.encode("left", "sett", {})),

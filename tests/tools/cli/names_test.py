@@ -119,6 +119,23 @@ class NamesTest(CliTest):
                 self.assertTrue(said.startswith(error), said)
                 self.assertEqual(said.count("\n"), 0, said)
 
+    def test_a_name_whose_bytes_mean_something_else_there(self):
+        # "arm" says "state" in the one byte in which "leg" hears "go".
+        byte = [{"name": "x", "type": "u8"}]
+        self.write("legs.kind.json", {"roio": 1, "kind": "legs", "hears": {"go": {"fields": byte}},
+                                      "says": {"state": {"fields": byte}}})
+        places = {"leg": {"address": "0.3", "kind": "legs"}, "foot": {"address": "0.4", "kind": "legs"},
+                  "pc": {"address": "0.10"}}
+        self.write("robot.json", {**ROBOT, "places": places})
+        self.assertEqual(self.sends("leg", "go", "x=1"), "0.10   -> 0.3     normal  message  [1]  01")
+        self.assertEqual(self.run_cli("send", "--from", "foot", "leg", "go", "x=1"),
+                         (2, "", "roio-cli: go: from foot these bytes are state\n"))
+        # A line without "from" is looked up as from who sends it.
+        line = '{"type":"Roio","to":"pc","message":"state","fields":{"x":2}}\n'
+        dump = self.dump("--robot", "none", "-n", "1", "local:robot")
+        self.assertEqual(self.run_cli("send", "--from", "foot", "-", stdin=line), (0, "", ""))
+        self.assertEqual(dump.result()[1], "0.4    -> 0.10    normal  message  [1]  02\n")
+
     def test_which_file_holds(self):
         other = dict(ROBOT, places={"arm": {"address": "3.4"}})
         deep = self.path("a/b")

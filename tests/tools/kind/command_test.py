@@ -173,6 +173,18 @@ class Wrong(CommandTest):
             self.assertRegex(errors, rf'^roio-cli: {source}:6: hears\.set\.fields\[2\]\.type: "i17".*\n$')
             self.assertEqual(out.read_text(), "as it was")
 
+    def test_a_header_of_all_256_choices_compiles_without_a_warning(self):
+        values = {f"v{i}": i for i in range(256)}
+        kind = self.write("Servo.kind.json", json.dumps({"roio": 1, "kind": "Servo", "hears": {
+            "go": {"fields": [{"name": "way", "type": "enum", "values": values}]}}}))
+        header = self.folder / "servo.hpp"
+        self.assertEqual(run("kind", "header", "-o", header, kind), (0, "", ""))
+        self.assertIn("namespace Servo_ {", header.read_text(), "beside Arduino's class")
+        source = self.write("use.cpp", '#include "servo.hpp"\n')
+        done = subprocess.run([os.environ["CXX"], "-std=c++11", "-Wall", "-Wextra", "-Werror", "-fsyntax-only", source],
+                              capture_output=True, text=True, timeout=GUARD)
+        self.assertEqual((done.returncode, done.stderr), (0, ""))
+
     def test_none_there(self):
         for command in (["kind", "header"], ["robot", "check"], ["robot", "dbc"]):
             status, made, errors = run(*command, self.folder / "none.kind.json")
@@ -180,13 +192,35 @@ class Wrong(CommandTest):
             self.assertIn("No such file or directory", errors)
 
     def test_a_robot_whose_kind_is_not_there(self):
-        robot = self.write("robot.json", ROBOT.read_text())
+        robot = self.write("robot.json", ROBOT.read_text().replace('"sensor-board"', '"sensor-bored"'))
         shutil.copy(KIND, self.folder)
         for command in ("check", "dbc"):
             status, made, errors = run("robot", command, robot)
             self.assertEqual((status, made, errors.count("\n")), (1, "", 1))
-            self.assertIn("sensor-board", errors)
+            self.assertIn("sensor-bored", errors)
 
+    def test_kinds_beside_the_program(self):
+        # A program of its own, with share/roio/kinds beside its folder.
+        program = self.folder / "tree/bin/roio-cli"
+        kinds = self.folder / "tree/share/roio/kinds"
+        program.parent.mkdir(parents=True)
+        kinds.mkdir(parents=True)
+        shutil.copy(os.environ["ROIO_CLI"], program)
+        (kinds / "beside.kind.json").write_text('{"roio": 1, "kind": "beside", "hears": {"go": {}}}')
+        robot = self.write("robot.json", '{"roio": 1, "name": "r", "places": {"a": {"address": "0.1", "kind": "beside"}}}')
+        for command in ("check", "dbc"):
+            result = subprocess.run([program, "robot", command, robot], capture_output=True, timeout=GUARD, text=True)
+            self.assertEqual((result.returncode, result.stderr), (0, ""))
+
+    def test_a_dbc_that_would_be_too_large(self):
+        text = "x" * 1000
+        hears = {name: {"description": text, "fields": [{"name": "x", "type": kind}]}
+                 for name, kind in (("a", "u8"), ("b", "u16"))}
+        self.write("crowd.kind.json", json.dumps({"roio": 1, "kind": "crowd", "hears": hears}))
+        places = {f"p{i}": {"address": f"{i // 100}.{i % 100}", "kind": "crowd"} for i in range(200)}
+        robot = self.write("robot.json", json.dumps({"roio": 1, "name": "crowd", "places": places}))
+        self.assertEqual(run("robot", "dbc", robot),
+                         (1, "", f"roio-cli: {robot}: its DBC has more than 64 MiB; expected at most so many\n"))
 
     def test_a_robot_of_too_many_places_for_a_dbc(self):
         def robot(count):

@@ -50,6 +50,10 @@ TEST(Names, BesideAllThatArduinoDeclares) {
   EXPECT_EQ(global_identifier("roio"), "roio_") << "what a sketch calls its node";
   EXPECT_EQ(global_identifier("random"), "random_") << "a function";
   EXPECT_EQ(global_identifier("while"), "while_") << "a keyword";
+  EXPECT_EQ(global_identifier("Servo"), "Servo_") << "a class";
+  EXPECT_EQ(global_identifier("Serial"), "Serial_") << "an object";
+  EXPECT_EQ(global_identifier("daylight"), "daylight_") << "a variable of the C library";
+  EXPECT_EQ(global_identifier("timezone"), "timezone_") << "the same";
 }
 
 TEST(Names, NoTwoAlikeInAScope) {

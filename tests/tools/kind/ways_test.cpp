@@ -110,13 +110,23 @@ TEST(Ways, WithAKindWhatThatSaysAlone) {
                                    "right>left moved", "right>0.* moved", "right>1.* moved"}));
 }
 
+TEST(Ways, WithAKindThatSaysNothingWhatTheReceiverHears) {
+  const Robot robot = RobotOf()
+                          .with("panel", {0, 10}, kind({message("light", 1)}, {}))
+                          .with("arm", {0, 2}, kind({message("move", 3)}, {}))
+                          .robot;
+  EXPECT_EQ(text_of(robot),
+            (Names{"panel>arm move", "panel>0.* move", "arm>panel light", "arm>0.* light"}));
+}
+
 TEST(Ways, ToEverybodyWhereAllThatKnowItAgree) {
   const Robot robot = RobotOf()
                           .with("pc", {0, 10})
                           .with("a", {0, 1}, kind({message("x", 3), message("only-a", 4)}, {}))
                           .with("b", {0, 2}, kind({message("y", 3)}, {}))
                           .robot;
-  EXPECT_EQ(text_of(robot), (Names{"pc>a x only-a", "pc>b y", "pc>0.* only-a"}));
+  EXPECT_EQ(text_of(robot), (Names{"pc>a x only-a", "pc>b y", "pc>0.* only-a", "a>b y", "a>0.* y",
+                                   "b>a x only-a", "b>0.* x only-a"}));
 }
 
 TEST(Ways, ToEverybodyWhatTwoKindsHaveAlikeOnce) {
@@ -125,7 +135,8 @@ TEST(Ways, ToEverybodyWhatTwoKindsHaveAlikeOnce) {
                           .with("a", {0, 1}, kind({message("stop", 2)}, {}))
                           .with("b", {0, 2}, kind({message("stop", 2), message("b", 5)}, {}))
                           .robot;
-  EXPECT_EQ(text_of(robot), (Names{"pc>a stop", "pc>b stop b", "pc>0.* stop b"}));
+  EXPECT_EQ(text_of(robot), (Names{"pc>a stop", "pc>b stop b", "pc>0.* stop b", "a>b stop b",
+                                   "a>0.* stop b", "b>a stop", "b>0.* stop"}));
 }
 
 TEST(Ways, NobodyToTalkTo) {

@@ -90,7 +90,15 @@ class ROIO_EXPORT Robot {
   [[nodiscard]] Parsed<const MessageKind*> message(Address source, Address destination,
                                                    std::string_view message_name) const;
 
-  /// A message to a place, from none: Node::send() puts its own address in. Normal priority.
+  /// Whether bytes are called something else on their way than the message that they were packed
+  /// as: a sender's own messages go before those that the receiver hears.
+  /// @return none: they are not, and may be called nothing; else what they are.
+  [[nodiscard]] std::optional<ParseError> objection(Address source, Address destination,
+                                                    const MessageKind& message,
+                                                    const Bytes& bytes) const;
+
+  /// A message to a place, from nobody (0.*, which no bus takes as a source): Node::send() puts its
+  /// own address in. Normal priority.
   /// @return an error as of message(), pack() and address_of().
   [[nodiscard]] Parsed<Message> encode(std::string_view destination, std::string_view message,
                                        std::span<const NamedValue> values) const;
@@ -116,7 +124,8 @@ ROIO_EXPORT Parsed<Robot> load_robot(const std::filesystem::path& file,
                                      const LoadOptions& options = {});
 
 /// The robot file that holds in a folder: robot.json in it, or in the nearest folder above. A file
-/// of that name that is not ours (an object with the field "roio") is passed over.
+/// of that name that is not ours (an object with the field "roio") is passed over; one that cannot
+/// be read is not, so that load_robot() says why.
 ROIO_EXPORT std::optional<std::filesystem::path> find_robot_file(
     const std::filesystem::path& folder);
 

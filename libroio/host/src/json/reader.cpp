@@ -6,14 +6,13 @@
 #include "json/events.hpp"
 #include "json/fields.hpp"
 #include "text/decimal.hpp"
+#include "text/json_text.hpp"
 #include "text/quote.hpp"
-#include "text/utf8.hpp"
 
 namespace roio {
 namespace {
 
 constexpr std::size_t max_text = 4096;
-constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";
 
 std::optional<JsonField> missing_field(const JsonFields& fields) {
   for (const JsonField field : {JsonField::type, JsonField::is_broadcast, JsonField::subnet,
@@ -106,34 +105,10 @@ ParseError not_json(std::string_view text, const JsonEvents& events) {
   return {"JSON: not valid at byte " + std::to_string(offset) + field + ": " + there, offset};
 }
 
-std::optional<ParseError> check_text(std::string_view text) {
-  if (text.size() > max_text) {
-    return ParseError{"JSON: " + std::to_string(text.size()) + " bytes; expected at most " +
-                          std::to_string(max_text),
-                      max_text};
-  }
-  const std::size_t not_utf8 = find_not_utf8(text);
-  if (not_utf8 < text.size()) {
-    return ParseError{"JSON: not UTF-8 at byte " + std::to_string(not_utf8) + ", " +
-                          quote(text.substr(not_utf8, 1)),
-                      not_utf8};
-  }
-  // To the parser, a zero byte is the end of the text, and the mark is nothing.
-  const std::size_t zero = text.find('\0');
-  if (zero != std::string_view::npos) {
-    return ParseError{"JSON: a zero byte at byte " + std::to_string(zero) + "; expected text",
-                      zero};
-  }
-  if (text.starts_with(byte_order_mark)) {
-    return ParseError{"JSON: begins with a byte order mark; expected none", 0};
-  }
-  return std::nullopt;
-}
-
 }  // namespace
 
 Parsed<JsonMessage> parse_json(std::string_view text) {
-  if (const auto error = check_text(text)) {
+  if (const auto error = check_json_text(text, max_text)) {
     return *error;
   }
   JsonEvents events;

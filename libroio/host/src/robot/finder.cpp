@@ -10,11 +10,12 @@ namespace {
 constexpr const char* file_name = "robot.json";
 
 /// An object with the field "roio". What is no JSON may be meant as one: when it has that word in
-/// quotes it is taken, so that reading it says what is wrong.
+/// quotes it is taken, so that reading it says what is wrong. So is a file that cannot be read.
 bool is_ours(const std::filesystem::path& file) {
   const Parsed<std::string> text = robot_file::read_file(file);
   if (!text) {
-    return false;
+    std::error_code not_there;
+    return std::filesystem::is_regular_file(file, not_there);
   }
   try {
     const robot_file::Value document =

@@ -19,6 +19,8 @@ inline constexpr std::size_t max_name = 32;
 inline constexpr std::size_t max_unit = 16;
 inline constexpr std::size_t max_title = 100;
 inline constexpr std::size_t max_description = 1000;
+/// A bus's name: a device's path may be long.
+inline constexpr std::size_t max_bus = 1000;
 
 /// Fields of a kind that a robot sets.
 inline constexpr std::size_t max_settings = 100;

@@ -19,8 +19,8 @@ bool are_same(const Field& a, const Field& b) {
          a.width == b.width && a.scale.numerator == b.scale.numerator &&
          a.scale.denominator == b.scale.denominator && a.minimum == b.minimum &&
          a.maximum == b.maximum &&
-         std::equal(a.choices.begin(), a.choices.end(), b.choices.begin(), b.choices.end(),
-                    [](const Choice& x, const Choice& y) { return are_same(x, y); });
+         std::is_permutation(a.choices.begin(), a.choices.end(), b.choices.begin(), b.choices.end(),
+                             [](const Choice& x, const Choice& y) { return are_same(x, y); });
 }
 
 bool are_same(const MessageKind& a, const MessageKind& b) {
@@ -105,7 +105,7 @@ Parsed<const MessageKind*> find_message(const Robot& robot, const Place* sender,
   const Agreement found = look_up(robot, sender, destination, name);
   if (found.other != nullptr) {
     return ParseError{quote(name) + ": " + found.first->name + " and " + found.other->name +
-                          " mean different bytes by it; expected a message to one of them",
+                          " mean different things by it; expected a message to one of them",
                       0};
   }
   if (found.message == nullptr) {

@@ -8,6 +8,9 @@
 namespace roio {
 namespace {
 
+// A place may well be 0.0.
+constexpr Address nobody = broadcast_of(0);
+
 std::vector<std::string> place_names(const Robot& robot) {
   std::vector<std::string> names;
   for (const Place& place : robot.places) {
@@ -58,6 +61,18 @@ Parsed<const MessageKind*> Robot::message(Address source, Address destination,
   return robot_file::find_message(*this, find(source), destination, message_name);
 }
 
+std::optional<ParseError> Robot::objection(Address source, Address destination,
+                                           const MessageKind& message, const Bytes& bytes) const {
+  const MessageKind* const other =
+      meaning({Priority::normal, MessageClass::message, destination, source},
+              std::span(bytes.data.data(), bytes.length));
+  if (other == nullptr || other->name == message.name) {
+    return std::nullopt;
+  }
+  return ParseError{message.name + ": from " + name_of(source) + " these bytes are " + other->name,
+                    0};
+}
+
 Parsed<Message> Robot::encode(std::string_view destination, std::string_view message,
                               std::span<const NamedValue> values) const {
   const Parsed<Address> to = address_of(destination);
@@ -73,7 +88,7 @@ Parsed<Message> Robot::encode(std::string_view destination, std::string_view mes
     return bytes.error();
   }
   Message out{};
-  out.header = {Priority::normal, MessageClass::message, *to, Address{}};
+  out.header = {Priority::normal, MessageClass::message, *to, nobody};
   out.length = bytes->length;
   std::copy(bytes->data.begin(), bytes->data.end(), out.data);
   return out;

@@ -113,7 +113,7 @@ class RobotReader {
     if (!name) {
       return;
     }
-    robot.bus = name->text(R"(a bus, such as "can0", "local:robot" or "serial:auto")");
+    robot.bus = name->line(1, max_bus);
     const Parsed<BusUrl> url = parse_bus_url(robot.bus);
     if (!url) {
       name->wrong(url.error().message);

@@ -69,8 +69,24 @@ std::optional<std::string> read_pin(const Object& simulation, std::string_view n
   return at->value().text;
 }
 
+std::string cs_of(const SimulatedBoard& board) {
+  return board.cs_pin.value_or("10");
+}
+
+std::string int_of(const SimulatedBoard& board) {
+  return board.int_pin.value_or("2");
+}
+
+void refuse_one_pin(const Object& simulation, const SimulatedBoard& board) {
+  if (cs_of(board) == int_of(board)) {
+    const auto at = simulation.find("int");
+    (at ? at : simulation.find("cs"))
+        ->wrong("CS and INT are both on pin " + cs_of(board) + "; expected two pins");
+  }
+}
+
 void refuse_taken(const At& at, const SimulatedBoard& board, const PinPart& part) {
-  if (part.pin == board.cs_pin.value_or("10") || part.pin == board.int_pin.value_or("2")) {
+  if (part.pin == cs_of(board) || part.pin == int_of(board)) {
     at.wrong("the pin is that of the MCP2515's CS or INT; expected another");
   }
   for (const PinPart& other : board.pins) {
@@ -116,6 +132,7 @@ SimulatedBoard read_simulation(const At& at, const std::filesystem::path& folder
   }
   board.cs_pin = read_pin(object, "cs");
   board.int_pin = read_pin(object, "int");
+  refuse_one_pin(object, board);
   if (const auto pins = object.find("pins")) {
     read_pins(*pins, board);
   }

@@ -221,7 +221,7 @@ Parsed<std::optional<JsonFrame>> parse_json_line(std::string_view named_line,
                                                  Address default_source, const Robot* robot) {
   const std::string line = without_bus(named_line);
   static const Robot nobody;  // names beside the bytes are passed over, as with any robot
-  const auto json = parse_json(line, robot != nullptr ? *robot : nobody);
+  const auto json = parse_json(line, robot != nullptr ? *robot : nobody, default_source);
   if (!json) {
     const auto other = parse_other(line);
     return other ? *other : Parsed<std::optional<JsonFrame>>(json.error());

@@ -7,6 +7,7 @@
 #include "kind/js.hpp"
 #include "kind/md.hpp"
 #include "kind/overview.hpp"
+#include "names/robot.hpp"
 #include "program/exit_status.hpp"
 #include "program/output.hpp"
 
@@ -57,7 +58,7 @@ int make_from_kind(const KindOptions& options) {
 }
 
 int make_dbc(const RobotDbcOptions& options) {
-  const Robot robot = value_or_fail(load_robot(options.file));
+  const Robot robot = value_or_fail(load_robot(options.file, load_options()));
   if (robot.places.size() > most_dbc_places) {
     throw Failure(options.file.string() + ": " + std::to_string(robot.places.size()) +
                   " places; expected at most " + std::to_string(most_dbc_places) +
@@ -72,7 +73,7 @@ int make_dbc(const RobotDbcOptions& options) {
 }
 
 int check_robot(const RobotCheckOptions& options) {
-  const Robot robot = value_or_fail(load_robot(options.file));
+  const Robot robot = value_or_fail(load_robot(options.file, load_options()));
   deliver(overview(robot), {}, options.file, "");
   return exit_success;
 }

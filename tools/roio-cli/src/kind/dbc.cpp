@@ -9,6 +9,7 @@
 #include "kind/latin1.hpp"
 #include "kind/names.hpp"
 #include "kind/ways.hpp"
+#include "program/exit_status.hpp"
 
 namespace roio::cli {
 namespace {
@@ -78,6 +79,10 @@ class Writer {
     }
     messages_ += '\n';
     comment(way, distinction);
+  }
+
+  [[nodiscard]] std::size_t size() const {
+    return head_.size() + messages_.size() + comments_.size() + tables_.size();
   }
 
   [[nodiscard]] Dbc finish() {
@@ -204,10 +209,14 @@ class Writer {
 
 }  // namespace
 
-Dbc robot_dbc(const Robot& robot, std::string_view source) {
+Dbc robot_dbc(const Robot& robot, std::string_view source, std::size_t most) {
   Writer writer(robot, source);
   for (const Way& way : ways_of(robot)) {
     writer.add(way);
+    if (writer.size() > most) {
+      throw Failure(fmt::format("{}: its DBC has more than {} MiB; expected at most so many",
+                                source, most >> 20U));
+    }
   }
   return writer.finish();
 }

@@ -2,6 +2,7 @@
 #ifndef ROIO_CLI_KIND_DBC_HPP
 #define ROIO_CLI_KIND_DBC_HPP
 
+#include <cstddef>
 #include <roio/robot.hpp>
 #include <string>
 #include <string_view>
@@ -17,7 +18,9 @@ struct Dbc {
 /// A message (BO_) for each identifier on which the robot's messages have names, of normal
 /// priority.
 /// @param source the robot's file, for the first line.
-Dbc robot_dbc(const Robot& robot, std::string_view source);
+/// @param most bytes. @throws Failure: there would be more.
+Dbc robot_dbc(const Robot& robot, std::string_view source,
+              std::size_t most = std::size_t{64} << 20U);
 
 }  // namespace roio::cli
 

@@ -37,8 +37,9 @@ std::string choice_enum(const FieldNames& names) {
   for (std::size_t i = 0; i < names.choices.size(); ++i) {
     text += fmt::format("  {} = {},\n", names.choices[i], names.field->choices[i].raw);
   }
-  return text + fmt::format("}};\nconstexpr bool is_valid({} value) {{\n  return {};\n}}\n\n",
-                            names.choice_type, header::choice_check(names));
+  const std::string check = header::choice_check(names);
+  return text + fmt::format("}};\nconstexpr bool is_valid({}{}) {{\n  return {};\n}}\n\n",
+                            names.choice_type, check == header::always ? "" : " value", check);
 }
 
 struct Member {
@@ -52,7 +53,7 @@ std::vector<Member> members_of(const MessageNames& names) {
     const std::string type = header::type_of(field);
     if (field.field->form != Field::Form::bytes) {
       members.push_back({fmt::format("{} {};", type, field.member), what_it_holds(*field.field)});
-    } else if (field.field->maximum > 0) {
+    } else {
       members.push_back({fmt::format("{} {}[{}];", type, field.member, field.field->maximum),
                          what_it_holds(*field.field)});
     }

@@ -12,10 +12,6 @@ constexpr unsigned byte_bits = 8;
 bool is_bytes(const Field& field) {
   return field.form == Field::Form::bytes;
 }
-/// Bytes of which there is never one have no member.
-bool has_member(const Field& field) {
-  return !is_bytes(field) || field.maximum > 0;
-}
 
 unsigned first_byte(const Field& field) {
   return field.first_bit / byte_bits;
@@ -105,7 +101,7 @@ std::string pack_fields(const MessageNames& names) {
       parts.push_back(&field);
     } else if (!is_bytes(*field.field)) {
       text += pack_number(field);
-    } else if (has_member(*field.field)) {
+    } else {
       text += pack_bytes(field);
     }
   }
@@ -306,7 +302,7 @@ std::string choice_check(const FieldNames& names) {
     if (largest->raw < 255) {
       conditions.push_back(fmt::format("static_cast<uint8_t>(value) <= {}", largest->raw));
     }
-    return conditions.empty() ? "true" : fmt::format("{}", fmt::join(conditions, " && "));
+    return conditions.empty() ? always : fmt::format("{}", fmt::join(conditions, " && "));
   }
   for (const std::string& choice : names.choices) {
     conditions.push_back(fmt::format("value == {}::{}", names.choice_type, choice));
@@ -330,8 +326,7 @@ std::string pack_function(const MessageNames& names) {
     const auto more = range_faults(field, "from." + field.member, type_bits(*field.field));
     faults.insert(faults.end(), more.begin(), more.end());
   }
-  const bool reads = std::any_of(names.fields.begin(), names.fields.end(),
-                                 [](const FieldNames& field) { return has_member(*field.field); });
+  const bool reads = !names.fields.empty();
   const bool writes = names.message->max_length > 0;
   std::string text = fmt::format("inline bool pack(const {}&{}, uint8_t*{}) {{\n", names.type,
                                  reads ? " from" : "", writes ? " bytes" : "");
@@ -347,7 +342,7 @@ std::string unpack_function(const MessageNames& names) {
   std::vector<std::string> faults;
   for (const FieldNames& field : names.fields) {
     if (is_bytes(*field.field)) {
-      reading += has_member(*field.field) ? unpack_bytes(field) : "";
+      reading += unpack_bytes(field);
       continue;
     }
     const std::string variable = "read." + field.member;

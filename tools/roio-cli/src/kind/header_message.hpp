@@ -43,6 +43,9 @@ std::string type_of(const FieldNames& names);
 std::string filled(const std::vector<std::string>& parts, const std::string& separator,
                    const std::string& indent);
 
+/// Every number is a choice.
+inline constexpr const char* always = "true";
+
 /// When a choice is one, as the one expression that a constexpr function of C++11 has.
 std::string choice_check(const FieldNames& names);
 

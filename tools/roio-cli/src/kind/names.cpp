@@ -160,19 +160,19 @@ static_assert(std::is_sorted(keywords.begin(), keywords.end()));
 // What a board's kind may well be called and has a meaning outside of all namespaces: in the C
 // library, in Arduino's core, or in a sketch with Roio. Sorted.
 constexpr std::array globals{
-    "abs"sv,      "accept"sv,   "access"sv,  "acos"sv,    "alarm"sv,   "asin"sv,   "atan"sv,
-    "atoi"sv,     "bind"sv,     "boolean"sv, "brk"sv,     "bsearch"sv, "byte"sv,   "ceil"sv,
-    "chdir"sv,    "clock"sv,    "close"sv,   "connect"sv, "cos"sv,     "delay"sv,  "div"sv,
-    "dup"sv,      "environ"sv,  "exit"sv,    "exp"sv,     "floor"sv,   "fork"sv,   "free"sv,
-    "gamma"sv,    "index"sv,    "init"sv,    "j0"sv,      "j1"sv,      "jn"sv,     "kill"sv,
-    "labs"sv,     "link"sv,     "listen"sv,  "log"sv,     "loop"sv,    "main"sv,   "malloc"sv,
-    "map"sv,      "micros"sv,   "millis"sv,  "nice"sv,    "open"sv,    "pause"sv,  "pipe"sv,
-    "poll"sv,     "pow"sv,      "qsort"sv,   "raise"sv,   "random"sv,  "read"sv,   "remove"sv,
-    "rename"sv,   "rewind"sv,   "rindex"sv,  "roio"sv,    "round"sv,   "select"sv, "send"sv,
-    "setup"sv,    "shutdown"sv, "signal"sv,  "sin"sv,     "sleep"sv,   "socket"sv, "sqrt"sv,
-    "square"sv,   "std"sv,      "sync"sv,    "system"sv,  "tan"sv,     "time"sv,   "tone"sv,
-    "truncate"sv, "unlink"sv,   "wait"sv,    "word"sv,    "write"sv,   "y0"sv,     "y1"sv,
-    "yield"sv,    "yn"sv,
+    "abs"sv,      "accept"sv, "access"sv,   "acos"sv,    "alarm"sv,   "asin"sv,     "atan"sv,
+    "atoi"sv,     "bind"sv,   "boolean"sv,  "brk"sv,     "bsearch"sv, "byte"sv,     "ceil"sv,
+    "chdir"sv,    "clock"sv,  "close"sv,    "connect"sv, "cos"sv,     "daylight"sv, "delay"sv,
+    "div"sv,      "dup"sv,    "environ"sv,  "exit"sv,    "exp"sv,     "floor"sv,    "fork"sv,
+    "free"sv,     "gamma"sv,  "index"sv,    "init"sv,    "j0"sv,      "j1"sv,       "jn"sv,
+    "kill"sv,     "labs"sv,   "link"sv,     "listen"sv,  "log"sv,     "loop"sv,     "main"sv,
+    "malloc"sv,   "map"sv,    "micros"sv,   "millis"sv,  "nice"sv,    "open"sv,     "pause"sv,
+    "pipe"sv,     "poll"sv,   "pow"sv,      "qsort"sv,   "raise"sv,   "random"sv,   "read"sv,
+    "remove"sv,   "rename"sv, "rewind"sv,   "rindex"sv,  "roio"sv,    "round"sv,    "select"sv,
+    "send"sv,     "setup"sv,  "shutdown"sv, "signal"sv,  "sin"sv,     "sleep"sv,    "socket"sv,
+    "sqrt"sv,     "square"sv, "std"sv,      "sync"sv,    "system"sv,  "tan"sv,      "time"sv,
+    "timezone"sv, "tone"sv,   "truncate"sv, "unlink"sv,  "wait"sv,    "word"sv,     "write"sv,
+    "y0"sv,       "y1"sv,     "yield"sv,    "yn"sv,
 };
 static_assert(std::is_sorted(globals.begin(), globals.end()));
 
@@ -240,7 +240,10 @@ std::string type_identifier(std::string_view name) {
 
 std::string global_identifier(std::string_view name) {
   std::string text = identifier(name);
-  return std::binary_search(globals.begin(), globals.end(), text) ? text + '_' : text;
+  // With a capital: classes and objects of Arduino's core and of its libraries, "Servo", "Serial".
+  const bool is_known = std::isupper(static_cast<unsigned char>(text.front())) != 0 ||
+                        std::binary_search(globals.begin(), globals.end(), text);
+  return is_known ? text + '_' : text;
 }
 
 std::string Scope::add(const std::string& wanted, std::size_t longest) {

@@ -40,7 +40,7 @@ bool hears(const Place& place, const Way& way) {
 }
 
 void add_way(const Robot& robot, Way way, std::vector<Way>& ways) {
-  if (way.source->kind) {
+  if (way.source->kind && !way.source->kind->said.empty()) {
     add_occurring(robot, way.source->kind->said, way);
   } else {
     for (const Place& place : robot.places) {

@@ -66,6 +66,9 @@ Parsed<std::optional<Bytes>> parse_named_data(const Robot& robot, Address source
   if (!bytes) {
     return bytes.error();
   }
+  if (const auto other = robot.objection(source, destination, **message, *bytes)) {
+    return *other;
+  }
   return std::optional<Bytes>(*bytes);
 }
 

@@ -32,11 +32,15 @@ std::shared_ptr<const Robot> find_robot(const std::optional<std::string>& option
   if (!file || file->empty() || *file == no_robot) {
     return nullptr;
   }
-  auto robot = load_robot(*file, {{share_folder() / "kinds"}});
+  auto robot = load_robot(*file, load_options());
   if (!robot) {
     throw UsageError(robot.error().message);
   }
   return std::make_shared<const Robot>(*robot);
+}
+
+LoadOptions load_options() {
+  return {{share_folder() / "kinds"}};
 }
 
 Parsed<Address> address_of(const Robot* robot, const std::string& text) {
@@ -47,8 +51,8 @@ std::string bus_of(const Robot& robot) {
   const bool has_options = robot.bus.find('?') != std::string::npos;
   const auto url = parse_bus_url(robot.bus);
   const bool takes_rate = url && url->kind != BusUrl::Kind::socketcan;
-  return robot.bitrate && takes_rate && !has_options
-             ? robot.bus + "?bitrate=" + std::to_string(*robot.bitrate)
+  return robot.bitrate && takes_rate && !url->bitrate
+             ? robot.bus + (has_options ? '&' : '?') + "bitrate=" + std::to_string(*robot.bitrate)
              : robot.bus;
 }
 

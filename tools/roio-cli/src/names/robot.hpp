@@ -17,6 +17,9 @@ namespace roio::cli {
 ///         without JSON, and a file was named.
 std::shared_ptr<const Robot> find_robot(const std::optional<std::string>& option);
 
+/// Where every command looks for kinds: beside the program, too.
+LoadOptions load_options();
+
 /// A place of the robot's, SUBNET.NODE or SUBNET.*. @param robot null: there is none.
 Parsed<Address> address_of(const Robot* robot, const std::string& text);
 
