@@ -83,5 +83,24 @@ const Row rows[] = {
 
 INSTANTIATE_TEST_SUITE_P(All, BusWordsTable, testing::ValuesIn(rows));
 
+TEST(BusWords, AFilterIsKnownByItsLook) {
+  for (const char* word : {"urgent", "normal", "or", "to=0.2", "from=can0", "class=system", "=",
+                           "123:700", "abc~700", "1000400A~1FFFFFFF"}) {
+    EXPECT_TRUE(looks_like_filter(word)) << word;
+  }
+}
+TEST(BusWords, ABusIsNoFilterThoughItsOptionsHaveAnEqualsSign) {
+  for (const char* word : {"local:x?bitrate=500000", "serial:/dev/ttyACM0?mode=listen",
+                           "serial:auto?baud=115200&bitrate=500000", "socketcan:mybus", "can0",
+                           "local:abc", "serial:auto"}) {
+    EXPECT_FALSE(looks_like_filter(word)) << word;
+  }
+}
+TEST(BusWords, WhatMayBeEitherIsNoFilter) {
+  for (const char* word : {"", "mybus", "urgnet", ":700", "~", "mybus:700", "123"}) {
+    EXPECT_FALSE(looks_like_filter(word)) << word;
+  }
+}
+
 }  // namespace
 }  // namespace roio::cli

@@ -121,6 +121,20 @@ TEST(InputLine, TheInterfaceIsTheLogs) {
   EXPECT_EQ(parse_input_line("(1.0) vcan7 123#", from)->interface_name, "vcan7");
   EXPECT_EQ(parse_input_line("123#", from)->interface_name, "");
 }
+TEST(InputLine, OfJsonTheBusIsTheInterface) {
+  const std::string message =
+      R"({"type":"Roio","isBroadcast":true,"subnet":0,"messageLength":0,"data":[])";
+  const std::string other = R"({"type":"CAN","kind":"standard","id":291,"length":0,"data":[])";
+  for (const std::string& line : {message, other}) {
+    EXPECT_EQ(parse_input_line(line + R"(,"bus":"local:arm"})", from)->interface_name, "local:arm");
+    EXPECT_EQ(parse_input_line(line + R"(,"timestamp":1.5,"bus":"a\"b}"})", from)->interface_name,
+              "a\"b}");
+    EXPECT_EQ(parse_input_line(line + "}", from)->interface_name, "");
+  }
+  // A bus is a text, and comes last.
+  EXPECT_FALSE(parse_input_line(other + R"(,"bus":1})", from).ok());
+  EXPECT_FALSE(parse_input_line(R"({"bus":"x",)" + other.substr(1) + "}", from).ok());
+}
 TEST(InputLine, ATimeIsToldWhereItCanBeRead) {
   const auto microseconds_of = [](const std::string& line) {
     const auto time = parse_input_line(line, from)->time;

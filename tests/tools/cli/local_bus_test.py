@@ -217,7 +217,9 @@ class SeveralTest(CliTest):
         self.send(BUS, "0.2", "01")
         out, _ = dump.process.communicate(timeout=GUARD)
         again = self.dump("-n", "2", "--log", BUS)
-        self.send(BUS, "-", stdin=out)
+        self.assertEqual(self.run_cli("send", BUS, "-", stdin=out), (
+            0, "", 'roio-cli: line 2: the log is of several interfaces, "local:arm" and "local:robot" among '
+                   "them; the frames of all are sent to local:robot\n"))
         self.assertEqual([line.split()[2] for line in again.result()[1].splitlines()],
                          ["123#11", "1000400A#01"])
 

@@ -10,7 +10,7 @@ import signal
 import subprocess
 import time
 
-from driver import CLI, GUARD, CliTest, main
+from driver import CLI, GUARD, CliTest, catches, main, wait_until
 
 BUS = "local:robot"
 
@@ -18,6 +18,11 @@ BUS = "local:robot"
 def frames(log):
     """The frames of a log without their times and interfaces."""
     return [line.split()[2] for line in log.splitlines()]
+
+
+def sleeps(process):
+    with open(f"/proc/{process.pid}/status") as status:
+        return "State:\tS" in status.read()
 
 
 class PlayTest(CliTest):
@@ -87,6 +92,17 @@ class OrderTest(PlayTest):
         log, status, err = self.played(lines)
         self.assertEqual((status, err), (0, "roio-cli: drive.log: 3 frames sent\n"))
         self.assertEqual(frames(log), ["1000400A#01", "123#R2", "0000400A#02"])
+
+    def test_json_lines_of_several_buses_go_where_each_should(self):
+        dump = self.dump("--json", "-n", "3", BUS, "local:desk")
+        self.send(BUS, "-", stdin="1000400A#01\n123#11\n")
+        self.send("local:desk", "0.2", "02")
+        path = self.log(dump.process.communicate(timeout=GUARD)[0])
+        dumps = [self.dump("--log", "-n", count, bus) for count, bus in (("2", "local:a"), ("1", "local:b"))]
+        self.assertEqual(self.play(path, "local:a=local:robot", "local:b=local:desk"),
+                         (0, "roio-cli: drive.log: 3 frames sent\n"))
+        self.assertEqual([frames(dump.process.communicate(timeout=GUARD)[0]) for dump in dumps],
+                         [["1000400A#01", "123#11"], ["1000400A#02"]])
 
 
 class TimeTest(PlayTest):
@@ -239,6 +255,16 @@ class LineTest(PlayTest):
                          (1, "roio-cli: none: No such file or directory\n"))
         self.assertEqual(self.play(self.folder, BUS)[0], 1)
 
+    def test_a_signal_ends_the_wait_for_a_pipes_writer(self):
+        os.mkfifo(self.path("pipe"))
+        for number in (signal.SIGINT, signal.SIGTERM):
+            player = subprocess.Popen([CLI, "play", self.path("pipe"), BUS], stderr=subprocess.PIPE, text=True)
+            self.addCleanup(player.kill)
+            wait_until(lambda: catches(player, number) and sleeps(player))
+            player.send_signal(number)
+            self.assertEqual(player.communicate(timeout=GUARD)[1], "")
+            self.assertEqual(player.returncode, 128 + number)
+
     def test_a_line_is_sent_when_it_comes(self):
         dump = self.dump(BUS)
         player = subprocess.Popen([CLI, "play", "-", BUS], stdin=subprocess.PIPE, stderr=subprocess.PIPE,
@@ -281,6 +307,27 @@ class BusTest(PlayTest):
         self.assertEqual(self.play("--wait=20", path, BUS), (
             1, "roio-cli: local:robot: nobody came to listen within 20 ms; nothing was sent\n"))
 
+    def test_a_bus_that_does_not_take_all_leaves_out_neither_the_others_nor_the_last_word(self):
+        hub = subprocess.Popen([CLI, "hub", "robot"], stderr=subprocess.PIPE, text=True)
+        self.addCleanup(hub.communicate)
+        self.addCleanup(hub.kill)
+        hub.stderr.readline()
+        dumps = [self.dump(BUS), self.dump("local:desk")]
+        player = subprocess.Popen([CLI, "play", "-", BUS + "=can0", "local:desk=can1"], stdin=subprocess.PIPE,
+                                  stderr=subprocess.PIPE, text=True)
+        self.addCleanup(player.kill)
+        player.stdin.write("(1.0) can0 001#\n(1.0) can1 001#\n")
+        player.stdin.flush()
+        for dump in dumps:
+            self.assertIn("001", dump.line())
+        hub.send_signal(signal.SIGSTOP)
+        os.waitpid(hub.pid, os.WUNTRACED)  # it stands still
+        err = player.communicate("(1.0) can0 002#\n(1.0) can1 003#\n", timeout=GUARD)[1].splitlines()
+        self.assertIn("003", dumps[1].line())
+        self.assertEqual(player.returncode, 1)
+        self.assertRegex(err[0], "^roio-cli: local:robot: .*")
+        self.assertEqual(err[1:], ["roio-cli: standard input: 4 frames sent"])
+
     def test_a_bus_slower_than_the_log_is_told_and_loses_nothing(self):
         # 1 s of a bus at 20 kbit/s, in a log of 1 ms: eight bytes take 131 bits or more.
         bus = "local:slow?bitrate=20000"
@@ -291,9 +338,10 @@ class BusTest(PlayTest):
 
 
 class ProgressTest(PlayTest):
-    def test_on_a_terminal_a_line_says_how_far_it_is(self):
-        path = self.log("(0.0) x 001#\n(7200.0) x 002#\n")
+    def on_terminal(self, path):
+        """A play, and what waits until its terminal has seen something."""
         main_end, terminal = pty.openpty()
+        self.addCleanup(os.close, main_end)
         player = subprocess.Popen([CLI, "play", path, BUS], stderr=terminal)
         os.close(terminal)
         seen = ""
@@ -304,11 +352,23 @@ class ProgressTest(PlayTest):
                 self.assertTrue(select.select([main_end], [], [], GUARD)[0])
                 seen += os.read(main_end, 4096).decode()
 
+        return player, see
+
+    def test_on_a_terminal_a_line_says_how_far_it_is(self):
+        path = self.log("(0.0) x 001#\n(7200.0) x 002#\n")
+        player, see = self.on_terminal(path)
         see(rf"\r\x1b\[K{re.escape(path)}: 100 %, 0:00:\d\d, 1 frame, next in 1:59:\d\d")
         player.send_signal(signal.SIGINT)
-        see(rf"\r\x1b\[Kroio-cli: {re.escape(path)}: 1 frame sent\r\n$")
+        see(rf"\r\x1b\[Kroio-cli: {BUS}: nobody else was there to have 1 message\r\n"
+            rf"roio-cli: {re.escape(path)}: 1 frame sent\r\n$")
         self.assertEqual(player.wait(GUARD), 130)
-        os.close(main_end)
+
+    def test_what_is_told_meanwhile_has_a_line_of_its_own(self):
+        path = self.log("(0.0) x 001#\n(1.5) x 002#\nbroken\n")
+        player, see = self.on_terminal(path)
+        see(rf"100 %, 0:00:\d\d, 1 frame\r\x1b\[Kroio-cli: {re.escape(path)}: line 3: expected .*\r\n")
+        see(r"2 frames sent, 1 line refused\r\n$")
+        self.assertEqual(player.wait(GUARD), 1)
 
 
 if __name__ == "__main__":

@@ -49,6 +49,13 @@ TEST(RouteWords, ContradictionsAreRefused) {
   EXPECT_EQ(routes({"vcan0="}),
             "BUS \"vcan0=\": expected the name of an interface in the log after '='");
 }
+TEST(RouteWords, OneBusHasOneName) {
+  EXPECT_EQ(routes({"can0=a", "socketcan:can0=b"}),
+            "BUS \"socketcan:can0=b\": the same as \"can0\"; expected one name of it");
+  EXPECT_EQ(routes({"local:x=a", "local:x?bitrate=500000"}),
+            "BUS \"local:x?bitrate=500000\": the same as \"local:x\"; expected one name of it");
+  EXPECT_EQ(routes({"can0=a", "local:can0=b"}), "a>can0 b>local:can0 2");
+}
 TEST(RouteWords, WhatIsNoBusIsRefusedAsEverywhere) {
   EXPECT_EQ(routes({"/dev/ttyACM0"}),
             "bus \"/dev/ttyACM0\": a path is no interface; expected serial:/dev/ttyACM0 for the "

@@ -154,7 +154,7 @@ class EndTest(RecordTest):
         wait_until(lambda: os.path.getsize(self.path(name)) > size)
 
     def test_a_signal_ends_it_with_all_that_came(self):
-        for number in (signal.SIGINT, signal.SIGTERM):
+        for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
             record = self.record("-o", f"{number}.log", BUS)
             self.numbered(50)
             record.send_signal(number)
@@ -163,6 +163,28 @@ class EndTest(RecordTest):
             text = f"{frames} frame{'' if frames == 1 else 's'}"
             self.assertEqual((status, err), (
                 128 + number, f"roio-cli: {number}.log: {text} recorded, 0 lost\n"))
+
+    def test_a_signal_leaves_out_nothing_that_has_come(self):
+        """However much of it has not been taken yet, from one bus and from several."""
+        count = 1500
+        hub = subprocess.Popen([CLI, "hub", "robot"], stderr=subprocess.PIPE, text=True)
+        self.addCleanup(hub.communicate)
+        self.addCleanup(hub.kill)
+        hub.stderr.readline()
+        for buses in ([BUS], [BUS, "local:other"]):
+            with self.subTest(buses):
+                name = f"{len(buses)}.log"
+                record = self.record("-o", name, *buses)
+                record.send_signal(signal.SIGSTOP)
+                dump = self.dump("-n", str(count), BUS)  # has each frame after the record
+                self.numbered(count)
+                self.assertEqual(dump.result()[0], 0)
+                record.send_signal(signal.SIGINT)
+                record.send_signal(signal.SIGCONT)
+                status, err = self.ends(record)
+                self.assertEqual(status, 130)
+                self.assertIn(f"{name}: {count} frames recorded, 0 lost\n", err)
+                self.assertEqual(self.numbers(self.path(name)), list(range(count)))
 
     def test_a_signal_in_a_flood_leaves_whole_lines_and_their_number(self):
         self.flood()

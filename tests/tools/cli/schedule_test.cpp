@@ -97,7 +97,7 @@ INSTANTIATE_TEST_SUITE_P(All, ScheduleTable, testing::ValuesIn(rows));
 
 TEST(Schedule, WhatIsLateIsDueWhenItWas) {
   const Schedule::Clock::time_point start(std::chrono::hours(1));
-  Schedule schedule(Pace{});
+  Schedule schedule(PlayPace{});
   EXPECT_EQ(schedule.due(Timestamp(milliseconds(0)), start), start);
   EXPECT_EQ(schedule.due(Timestamp(milliseconds(10)), start + milliseconds(500)),
             start + milliseconds(10));
@@ -107,7 +107,7 @@ TEST(Schedule, WhatIsLateIsDueWhenItWas) {
 
 TEST(Schedule, ALogThatBeginsAgainFollowsItsEnd) {
   const Schedule::Clock::time_point start(std::chrono::hours(1));
-  Schedule schedule(Pace{});
+  Schedule schedule(PlayPace{});
   EXPECT_EQ(schedule.due(Timestamp(milliseconds(5000)), start), start);
   EXPECT_EQ(schedule.due(Timestamp(milliseconds(9000)), start), start + milliseconds(4000));
   schedule.begin_again();

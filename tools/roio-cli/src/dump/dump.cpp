@@ -1,11 +1,13 @@
 #include "dump/dump.hpp"
 
+#include <signal.h>
 #include <unistd.h>
 
 #include <memory>
 
 #include "names/robot_labels.hpp"
 #include "program/exit_status.hpp"
+#include "program/interrupt.hpp"
 #include "program/output.hpp"
 
 namespace roio::cli {
@@ -96,7 +98,14 @@ int dump(const DumpOptions& options) {
   if (options.verbose) {
     note(names_of(listener.origins()) + ": listening");
   }
-  listener.run(shown);
+  try {
+    listener.run(shown);
+  } catch (const Failure&) {
+    // A terminal that has gone takes no last lines.
+    if (Interrupt::signal() != SIGHUP) {
+      throw;
+    }
+  }
   say_counts(listener, options.verbose);
   return listener.finish();
 }

@@ -40,6 +40,7 @@ Parsed<InputLine> from_json(std::string_view line, Address default_source, const
   }
   InputLine read = line_of((*frame)->frame);
   read.time = (*frame)->time;
+  read.interface_name = (*frame)->bus;
   return read;
 }
 

@@ -201,25 +201,30 @@ std::optional<Parsed<std::optional<JsonFrame>>> parse_other(std::string_view lin
   return std::nullopt;
 }
 
-/// The line without the bus that it comes from.
-std::string without_bus(std::string_view line) {
+/// A line, and the bus that it comes from apart.
+struct BusLine {
+  std::string line;
+  std::string bus;  ///< Empty: it says none.
+};
+
+BusLine take_bus_off(std::string_view line) {
   const std::size_t field = line.rfind(bus_field);
   const std::size_t brace = line.rfind('}');
   if (field == std::string_view::npos || brace == std::string_view::npos || brace < field) {
-    return std::string(line);
+    return {std::string(line), {}};
   }
   const std::string_view value =
       line.substr(field + bus_field.size(), brace - field - bus_field.size());
   const Json name = Json::parse(value.begin(), value.end(), nullptr, false);
-  return name.is_string() ? std::string(line.substr(0, field)) + std::string(line.substr(brace))
-                          : std::string(line);
+  if (!name.is_string()) {
+    return {std::string(line), {}};
+  }
+  return {std::string(line.substr(0, field)) + std::string(line.substr(brace)),
+          name.get<std::string>()};
 }
 
-}  // namespace
-
-Parsed<std::optional<JsonFrame>> parse_json_line(std::string_view named_line,
-                                                 Address default_source, const Robot* robot) {
-  const std::string line = without_bus(named_line);
+Parsed<std::optional<JsonFrame>> parse_without_bus(const std::string& line, Address default_source,
+                                                   const Robot* robot) {
   static const Robot nobody;  // names beside the bytes are passed over, as with any robot
   const auto json = parse_json(line, robot != nullptr ? *robot : nobody, default_source);
   if (!json) {
@@ -235,6 +240,20 @@ Parsed<std::optional<JsonFrame>> parse_json_line(std::string_view named_line,
     return ParseError{"expected a message of class message, system or stream", 0};
   }
   return std::optional(JsonFrame{frame, json->time});
+}
+
+}  // namespace
+
+Parsed<std::optional<JsonFrame>> parse_json_line(std::string_view line, Address default_source,
+                                                 const Robot* robot) {
+  BusLine split = take_bus_off(line);
+  auto frame = parse_without_bus(split.line, default_source, robot);
+  if (!frame || !*frame) {
+    return frame;
+  }
+  JsonFrame with_bus = **frame;
+  with_bus.bus = std::move(split.bus);
+  return std::optional(std::move(with_bus));
 }
 
 std::unique_ptr<RecordFormat> json_format(bool with_bus, std::shared_ptr<const Robot> robot) {

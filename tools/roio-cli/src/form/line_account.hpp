@@ -16,7 +16,6 @@ class LineAccount {
   explicit LineAccount(std::string input = {}) : input_(std::move(input)) {}
 
   void next_line() { ++line_number_; }
-  [[nodiscard]] std::uint64_t line_number() const { return line_number_; }
 
   /// Counts it, and names the line it is in, if there have not been too many.
   void refuse(const ParseError& error);

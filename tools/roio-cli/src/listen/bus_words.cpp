@@ -33,8 +33,9 @@ bool looks_like_filter(std::string_view word) {
   const bool has_mask =
       mask != std::string_view::npos && mask > 0 &&
       word.substr(0, mask).find_first_not_of(hex_digits) == std::string_view::npos;
-  return word.find('=') != std::string_view::npos || (has_mask && !looks_like_bus(word)) ||
-         word == "urgent" || word == "normal" || word == "or";
+  // A bus's options have "=", too.
+  return !looks_like_bus(word) && (word.find('=') != std::string_view::npos || has_mask ||
+                                   word == "urgent" || word == "normal" || word == "or");
 }
 
 BusWords split_bus_words(const std::vector<std::string>& named,

@@ -19,8 +19,8 @@ struct BusWords {
 /// "vcan12"). No filter is either.
 bool looks_like_bus(std::string_view word);
 
-/// Whether a word can be nothing but a filter: it has "=", or is "urgent", "normal" or "or", or
-/// ID:MASK or ID~MASK.
+/// Whether a word can be nothing but a filter: it is no bus by its look, and has "=", or is
+/// "urgent", "normal" or "or", or ID:MASK or ID~MASK.
 bool looks_like_filter(std::string_view word);
 
 /// @param named buses that an option has named, so that no other word has to be one.

@@ -11,6 +11,10 @@ constexpr std::size_t batch_size = 256;
 // the kernel, or through the program that carries a local bus.
 constexpr std::chrono::milliseconds others_have{2};
 
+// A frame that has waited so long for others is next, whatever its time: a clock may have been set
+// since.
+constexpr std::chrono::milliseconds longest_wait{50};
+
 }  // namespace
 
 Intake::Intake(std::span<const std::unique_ptr<Bus>> buses) : buses_(buses) {
@@ -39,18 +43,24 @@ Result Intake::receive_from_one(std::size_t most, Timeout timeout) {
 }
 
 Result Intake::receive_from_several(std::size_t most, Timeout timeout) {
-  if (!earliest()) {
+  if (!earliest(Clock::now())) {
     if (!Interrupt::wait_readable(fds_, timeout)) {
       return Interrupt::signal() != 0 ? Result::cancelled : Result::timeout;
     }
     refill();
   }
-  if (const auto first = earliest(); first && !is_behind()) {
+  if (const auto first = earliest(Clock::now()); first && !is_behind()) {
     static_cast<void>(Interrupt::sleep_until(waiting_[*first].arrived + others_have));
   }
   refill();
-  merge(most);
+  merge(most, !is_behind());
   return heard_.empty() ? Result::timeout : Result::ok;
+}
+
+void Intake::take(std::size_t most) {
+  heard_.clear();
+  refill();
+  merge(most, false);
 }
 
 void Intake::refill() {
@@ -67,12 +77,11 @@ void Intake::refill() {
 
 // Ends where another bus may still have what is earlier: where its batch is at its end, it is asked
 // again first.
-void Intake::merge(std::size_t most) {
-  const bool behind = is_behind();
+void Intake::merge(std::size_t most, bool hold_back) {
   const auto now = Clock::now();
   while (heard_.size() < most) {
-    const auto from = earliest();
-    if (!from || (!behind && waiting_[*from].arrived + others_have > now)) {
+    const auto from = earliest(now);
+    if (!from || (hold_back && waiting_[*from].arrived + others_have > now)) {
       return;
     }
     Waiting& waiting = waiting_[*from];
@@ -90,19 +99,22 @@ bool Intake::is_behind() const {
   });
 }
 
-std::optional<std::size_t> Intake::earliest() const {
+std::optional<std::size_t> Intake::earliest(Clock::time_point now) const {
   std::optional<std::size_t> found;
   for (std::size_t i = 0; i < waiting_.size(); ++i) {
-    const Waiting& waiting = waiting_[i];
-    if (waiting.is_empty()) {
-      continue;
-    }
-    if (!found ||
-        waiting.batch[waiting.next].time < waiting_[*found].batch[waiting_[*found].next].time) {
+    if (!waiting_[i].is_empty() && (!found || goes_before(waiting_[i], waiting_[*found], now))) {
       found = i;
     }
   }
   return found;
+}
+
+// Both have something.
+bool Intake::goes_before(const Waiting& one, const Waiting& other, Clock::time_point now) {
+  const bool one_is_late = now - one.arrived > longest_wait;
+  const bool other_is_late = now - other.arrived > longest_wait;
+  return one_is_late != other_is_late ? one_is_late
+                                      : one.batch[one.next].time < other.batch[other.next].time;
 }
 
 }  // namespace roio::cli

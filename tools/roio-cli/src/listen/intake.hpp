@@ -1,5 +1,6 @@
 /// What comes in from one bus or from several: in the order of each bus, and of the times of all as
-/// far as buses bring their frames within milliseconds. A bridge may be slower.
+/// far as buses bring their frames within milliseconds. A bridge may be slower, and clocks may be
+/// set: no bus waits long for another's times.
 #ifndef ROIO_CLI_INTAKE_HPP
 #define ROIO_CLI_INTAKE_HPP
 
@@ -30,7 +31,10 @@ class Intake {
   /// @return ok: heard() has something; timeout; or cancelled, by a signal.
   Result receive(std::size_t most, Timeout timeout);
 
-  /// What receive() has found, in order; valid until it is called again.
+  /// Takes what has come by now, in order, without waiting, and holds nothing back. At the end.
+  void take(std::size_t most);
+
+  /// What receive() or take() has found, in order; valid until either is called again.
   [[nodiscard]] std::span<const Heard> heard() const { return heard_; }
 
  private:
@@ -51,8 +55,10 @@ class Intake {
   Result receive_from_several(std::size_t most, Timeout timeout);
   [[nodiscard]] bool is_behind() const;
   void refill();
-  void merge(std::size_t most);
-  [[nodiscard]] std::optional<std::size_t> earliest() const;
+  void merge(std::size_t most, bool hold_back);
+  [[nodiscard]] std::optional<std::size_t> earliest(Clock::time_point now) const;
+  [[nodiscard]] static bool goes_before(const Waiting& one, const Waiting& other,
+                                        Clock::time_point now);
 
   std::span<const std::unique_ptr<Bus>> buses_;
   std::vector<Waiting> waiting_;

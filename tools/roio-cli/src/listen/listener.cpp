@@ -18,6 +18,9 @@ constexpr std::size_t most_at_once = 256;
 // noticed when no frame comes.
 constexpr Timeout look_around_every = std::chrono::milliseconds(200);
 
+// After a signal, what has come is taken; where more keeps coming, for so long.
+constexpr Timeout longest_drain = std::chrono::milliseconds(200);
+
 }  // namespace
 
 Listener::Listener(const ListenOptions& options)
@@ -50,6 +53,9 @@ void Listener::run(Hearer& hearer) {
       look();
     }
     hearer.settle(intake.heard().empty());
+  }
+  if (Interrupt::signal() != 0) {
+    drain(intake, hearer);
   }
   for (Ear& ear : ears_) {
     ear.watch->tell_fd_frames();
@@ -104,10 +110,7 @@ std::size_t Listener::room() const {
 bool Listener::receive(Intake& intake, Hearer& hearer) {
   const std::size_t most = room();
   const Result result = intake.receive(most, std::min(quiet_time_left(), look_around_every));
-  bool heard = false;
-  for (const auto& [from, received] : intake.heard()) {
-    heard = hear(from, *received, hearer) || heard;
-  }
+  const bool heard = hear_all(intake, hearer);
   if (heard) {
     last_heard_ = Clock::now();
   }
@@ -116,6 +119,27 @@ bool Listener::receive(Intake& intake, Hearer& hearer) {
     static_cast<void>(Interrupt::sleep_until(Clock::now() + options_.gather));
   }
   return result == Result::ok || result == Result::timeout;
+}
+
+// What came while frames gathered, and what was held back for its order.
+void Listener::drain(Intake& intake, Hearer& hearer) {
+  const auto until = Clock::now() + longest_drain;
+  while (!has_all() && Clock::now() < until) {
+    intake.take(room());
+    if (intake.heard().empty()) {
+      return;
+    }
+    hear_all(intake, hearer);
+  }
+}
+
+// @return whether any was told.
+bool Listener::hear_all(const Intake& intake, Hearer& hearer) {
+  bool heard = false;
+  for (const auto& [from, received] : intake.heard()) {
+    heard = hear(from, *received, hearer) || heard;
+  }
+  return heard;
 }
 
 // @return whether it was told.

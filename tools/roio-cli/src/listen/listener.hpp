@@ -84,6 +84,8 @@ class Listener {
   [[nodiscard]] bool finished() const { return has_all() || quiet_time_left() <= no_wait; }
   [[nodiscard]] std::size_t room() const;
   bool receive(class Intake& intake, Hearer& hearer);
+  void drain(class Intake& intake, Hearer& hearer);
+  bool hear_all(const class Intake& intake, Hearer& hearer);
   bool hear(std::size_t bus, const Received& received, Hearer& hearer);
   void look();
 

@@ -1,14 +1,25 @@
 #include "listen/words.hpp"
 
-#include <algorithm>
 #include <limits>
 
 #include "listen/bus_words.hpp"
 #include "names/filter_names.hpp"
 #include "names/robot.hpp"
+#include "program/one_bus.hpp"
 #include "program/words.hpp"
 
 namespace roio::cli {
+namespace {
+
+void refuse_again(const std::string& bus, std::span<const std::string> before) {
+  if (const std::string* first = find_bus(before, bus)) {
+    throw UsageError(*first == bus ? "BUS " + quote(bus) + ": given twice; expected once"
+                                   : "BUS " + quote(bus) + ": the same as " + quote(*first) +
+                                         "; expected once");
+  }
+}
+
+}  // namespace
 
 ListenWords::ListenWords(CLI::App& app)
     : app_(app),
@@ -57,11 +68,9 @@ void ListenWords::parse_words(ListenOptions& options) const {
   if (split.buses.empty()) {
     refuse(app_.get_name(), "expected BUS");
   }
-  for (const std::string& bus : split.buses) {
-    static_cast<void>(parse_bus(bus));
-    if (std::count(split.buses.begin(), split.buses.end(), bus) > 1) {
-      throw UsageError("BUS " + quote(bus) + ": given twice; expected once");
-    }
+  for (std::size_t i = 0; i < split.buses.size(); ++i) {
+    static_cast<void>(parse_bus(split.buses[i]));
+    refuse_again(split.buses[i], std::span(split.buses).first(i));
   }
   options.buses = std::move(split.buses);
   options.filters = with_addresses(options.robot.get(), std::move(split.filters));

@@ -2,13 +2,16 @@
 
 #include <fcntl.h>
 #include <poll.h>
+#include <signal.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <array>
 #include <atomic>
 #include <cerrno>
+#include <cstdint>
 #include <ctime>
+#include <limits>
 #include <optional>
 #include <system_error>
 #include <vector>
@@ -108,7 +111,11 @@ bool Interrupt::sleep_until(std::chrono::steady_clock::time_point until) {
 }
 
 void Interrupt::also(int number) {
-  catch_interrupt(number, on_signal);
+  struct sigaction now {};
+  const bool is_ignored = ::sigaction(number, nullptr, &now) == 0 && now.sa_handler == SIG_IGN;
+  if (!is_ignored) {
+    catch_interrupt(number, on_signal);
+  }
 }
 
 bool Interrupt::wait(std::span<pollfd> fds, std::chrono::steady_clock::time_point until) {

@@ -29,7 +29,7 @@ class Interrupt {
   /// @return false when a signal ended the wait.
   [[nodiscard]] static bool sleep_until(std::chrono::steady_clock::time_point until);
 
-  /// From now on this signal ends the command, too.
+  /// From now on this signal ends the command, too, unless it is ignored, as `nohup` has it.
   static void also(int number);
 
   /// Waits as poll() does, at most until `until`; another signal's handler ends the wait, too.

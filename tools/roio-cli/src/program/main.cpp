@@ -1,5 +1,7 @@
 /// roio-cli: a person's, and a script's, way onto a Roio bus. Documented in docs/cli.md.
+#include <signal.h>
 #include <string_view>
+
 #include <variant>
 
 #include "program/command_line.hpp"
@@ -17,7 +19,8 @@ int run(const Information& information) {
   flush(out);
   return exit_success;
 }
-// What runs until a signal, or for as long as a bus takes, ends cleanly by one.
+// What runs until a signal, or for as long as a bus takes, ends cleanly by one: also,
+// where there are last words to be said, when its terminal goes away.
 int run(const SendOptions& options) {
   const Interrupt interrupt;
   return send(options);
@@ -28,6 +31,7 @@ int run(const AskOptions& options) {
 }
 int run(const DumpOptions& options) {
   const Interrupt interrupt;
+  Interrupt::also(SIGHUP);
   return dump(options);
 }
 int run(const TopOptions& options) {
@@ -44,6 +48,7 @@ int run(const CheckOptions& options) {
 }
 int run(const RecordOptions& options) {
   const Interrupt interrupt;
+  Interrupt::also(SIGHUP);
   return record(options);
 }
 int run(const PlayOptions& options) {
@@ -56,6 +61,7 @@ int run(const HubOptions& options) {
 }
 int run(const AttachOptions& options) {
   const Interrupt interrupt;
+  Interrupt::also(SIGHUP);
   return attach(options);
 }
 // What is over in moments is just ended.

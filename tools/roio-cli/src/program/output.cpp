@@ -32,7 +32,7 @@ void flush(Buffer& out) {
 
 bool output_is_gone() noexcept {
   pollfd output{STDOUT_FILENO, 0, 0};
-  return ::poll(&output, 1, 0) == 1 && (output.revents & POLLERR) != 0;
+  return ::poll(&output, 1, 0) == 1 && (output.revents & (POLLERR | POLLHUP | POLLNVAL)) != 0;
 }
 
 bool wants_colour() noexcept {

@@ -21,7 +21,16 @@ namespace {
 }
 
 int open_input(const std::string& name) {
-  const int fd = name == "-" ? STDIN_FILENO : ::open(name.c_str(), O_RDONLY | O_CLOEXEC);
+  if (name == "-") {
+    return STDIN_FILENO;
+  }
+  int fd = -1;
+  do {  // a pipe waits here for its writer
+    fd = ::open(name.c_str(), O_RDONLY | O_CLOEXEC);
+  } while (fd < 0 && errno == EINTR && Interrupt::signal() == 0);
+  if (fd < 0 && Interrupt::signal() != 0) {
+    throw Interrupted{};
+  }
   if (fd < 0) {
     fail(name);
   }

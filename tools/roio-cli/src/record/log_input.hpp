@@ -11,10 +11,13 @@
 
 namespace roio::cli {
 
+/// A signal came while a pipe waited for its writer.
+struct Interrupted {};
+
 class LogInput {
  public:
   /// @param name "-": standard input.
-  /// @throws Failure: it cannot be opened; UsageError: it is no log but a capture.
+  /// @throws Failure: it cannot be opened, or is no log but a capture; Interrupted.
   explicit LogInput(const std::string& name);
   LogInput(const LogInput&) = delete;
   LogInput& operator=(const LogInput&) = delete;

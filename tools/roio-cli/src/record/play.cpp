@@ -48,10 +48,19 @@ class Outputs {
     return senders_[bus].send(frames);
   }
 
-  void close() {
+  /// Each, whatever becomes of the others.
+  /// @return false when one did not hand over all, which is told.
+  bool close() {
+    bool all_went = true;
     for (Sender& sender : senders_) {
-      sender.close();
+      try {
+        sender.close();
+      } catch (const Failure& failure) {
+        note(failure.what());
+        all_went = false;
+      }
     }
+    return all_went;
   }
 
   [[nodiscard]] std::uint64_t sent() const {
@@ -92,9 +101,10 @@ class Player {
       input_.begin_again();
       schedule_.begin_again();
     }
-    outputs_.close();
     progress_.clear();
-    return finish();
+    const bool all_went = outputs_.close();
+    const int status = finish();
+    return all_went ? status : exit_failure;
   }
 
  private:
@@ -126,8 +136,11 @@ class Player {
     const auto parsed = parse_input_line(line, default_source);
     if (parsed && parsed->kind == InputLine::Kind::frame) {
       take_frame(*parsed);
+    } else if (pass_ == 0 && parsed) {
+      account_.pass_over(parsed->kind);
     } else if (pass_ == 0) {
-      parsed ? account_.pass_over(parsed->kind) : account_.refuse(parsed.error());
+      progress_.clear();
+      account_.refuse(parsed.error());
     }
   }
 
@@ -265,7 +278,11 @@ class Player {
 }  // namespace
 
 int play(const PlayOptions& options) {
-  return Player(options).run();
+  try {
+    return Player(options).run();
+  } catch (const Interrupted&) {
+    return exit_signal + Interrupt::signal();
+  }
 }
 
 }  // namespace roio::cli

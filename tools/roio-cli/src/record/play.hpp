@@ -17,7 +17,7 @@ namespace roio::cli {
 struct PlayOptions {
   std::string file;  ///< "-": standard input.
   Routes routes;
-  Pace pace;
+  PlayPace pace;
   std::uint64_t times = 1;  ///< How often the log is played; 0: until a signal.
   std::optional<LogTime> from;
   std::optional<LogTime> to;

@@ -4,11 +4,10 @@
 #include <charconv>
 #include <string_view>
 
+#include "record/log_disorder.hpp"
+
 namespace roio::cli {
 namespace {
-
-// Frames of several buses may stand in a log in the order in which they were read.
-constexpr std::chrono::seconds disorder{1};
 
 constexpr std::size_t second_digits = 10;
 constexpr std::size_t nanosecond_digits = 9;
@@ -58,7 +57,7 @@ PlayWindow::Place PlayWindow::place(std::optional<Timestamp> time) {
     return last_;
   }
   first_ = first_.value_or(*time);
-  if (to_ && *time > absolute(*to_) + disorder) {
+  if (to_ && *time > absolute(*to_) + log_disorder) {
     last_ = Place::behind;
   } else if ((to_ && *time > absolute(*to_)) || (from_ && *time < absolute(*from_))) {
     last_ = Place::outside;

@@ -55,8 +55,8 @@ PlayWords::PlayWords(CLI::App& program)
               ->type_name("MS");
 }
 
-Pace PlayWords::parse_pace() const {
-  Pace pace;
+PlayPace PlayWords::parse_pace() const {
+  PlayPace pace;
   if (speed_->count() > 0) {
     pace.speed = speed_text_ == "max" ? std::nullopt : std::optional(parse_speed(speed_text_));
   }

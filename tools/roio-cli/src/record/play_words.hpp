@@ -24,7 +24,7 @@ class PlayWords {
 
  private:
   [[nodiscard]] PlayOptions parse_options() const;
-  [[nodiscard]] Pace parse_pace() const;
+  [[nodiscard]] PlayPace parse_pace() const;
 
   std::string speed_text_, loop_text_, from_text_, to_text_, gap_text_, file_;
   std::string timeout_text_ = "1000", wait_text_;

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "program/one_bus.hpp"
+
 namespace roio::cli {
 namespace {
 
@@ -37,6 +39,10 @@ std::optional<ParseError> add_route(Routes& routes, const std::string& word) {
   const Route route = parse_route(word);
   if (const auto url = parse_bus_url(route.bus); !url) {
     return url.error();
+  }
+  const std::string* const other = find_bus(routes.buses, route.bus);
+  if (other != nullptr && *other != route.bus) {
+    return refused(word, "the same as " + quote(*other) + "; expected one name of it");
   }
   const std::size_t number = number_of(route.bus, routes.buses);
   if (!route.interface_name) {

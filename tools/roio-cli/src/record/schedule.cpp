@@ -2,11 +2,10 @@
 
 #include <algorithm>
 
+#include "record/log_disorder.hpp"
+
 namespace roio::cli {
 namespace {
-
-// Frames of several buses may stand in a log in the order in which they were read.
-constexpr std::chrono::seconds disorder{1};
 
 // No pause is longer: a hundred years, which no clock overflows by.
 constexpr std::chrono::hours longest_pause{876'000};
@@ -25,7 +24,7 @@ Schedule::Clock::time_point Schedule::due(std::optional<Timestamp> time, Clock::
   }
   if (!last_time_) {
     set_reference(*time, *last_due_);
-  } else if (*time < *last_time_ - disorder) {
+  } else if (*time < *last_time_ - log_disorder) {
     ++steps_back_;
     set_reference(*time, *last_due_);
   }

@@ -9,7 +9,7 @@
 
 namespace roio::cli {
 
-struct Pace {
+struct PlayPace {
   /// Times the log's own; none: as fast as the bus takes them.
   std::optional<double> speed = 1.0;
   /// A pause that would be longer is cut to this.
@@ -20,7 +20,7 @@ class Schedule {
  public:
   using Clock = std::chrono::steady_clock;
 
-  explicit Schedule(const Pace& pace) : pace_(pace) {}
+  explicit Schedule(const PlayPace& pace) : pace_(pace) {}
 
   /// @param time of the next frame in the log; none: it has none, and follows the one before.
   /// @param now when the first is due.
@@ -38,7 +38,7 @@ class Schedule {
   void set_reference(Timestamp time, Clock::time_point due);
   [[nodiscard]] std::chrono::nanoseconds at_pace(std::chrono::nanoseconds in_log) const;
 
-  Pace pace_;
+  PlayPace pace_;
   std::optional<Timestamp> last_time_;
   Timestamp reference_time_{};
   Clock::time_point reference_due_{};

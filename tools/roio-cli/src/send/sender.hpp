@@ -38,7 +38,6 @@ class Sender {
   Sender(Bus& bus, std::chrono::milliseconds timeout) : bus_(bus), timeout_(timeout) {}
 
   [[nodiscard]] std::uint64_t sent() const { return sent_; }
-  [[nodiscard]] const std::string& bus_name() const { return bus_.name(); }
 
   /// @return false when a signal came first.
   /// @throws Failure: a frame had to wait longer than the timeout.
