@@ -28,11 +28,13 @@ Frame frame(const Message& message) {
 TEST(Answer, WhichMessagesAreOne) {
   const Address node{0, 2};
   const Address everybody{0, 255};
+  const Timeout margin = std::chrono::milliseconds(50);
   const auto us_later = std::chrono::microseconds(1);
   const std::vector<std::tuple<const char*, Address, Message, Timeout, bool>> rows{
       {"from whom was asked", node, message(node, us), us_later, true},
       {"at the very moment", node, message(node, us), Timeout(0), true},
-      {"before the question", node, message(node, us), -us_later, false},
+      {"a little before, by another clock", node, message(node, us), -margin, true},
+      {"before the question", node, message(node, us), -margin - us_later, false},
       {"from another", node, message({0, 3}, us), us_later, false},
       {"from that node of another subnet", node, message({1, 2}, us), us_later, false},
       {"to another", node, message(node, {0, 11}), us_later, false},

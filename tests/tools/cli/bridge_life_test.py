@@ -6,7 +6,7 @@ import subprocess
 import time
 
 from bridge_test import BridgeTest
-from driver import CLI, SLOWER, main
+from driver import CLI, GUARD, SLOWER, main
 
 
 class NothingOldTest(BridgeTest):
@@ -31,6 +31,20 @@ class NothingOldTest(BridgeTest):
             (1, "", f"roio-cli: {self.bus}: not sent within 500 ms: nobody acknowledges, the bus is "
                     "error-passive; 0 messages sent before\n"))
         self.expect_nothing_old()
+
+    def test_a_question_that_never_went_out_has_no_answer(self):
+        self.assertEqual(
+            self.run_cli("ask", "--timeout", "500", self.bus, "0.2", "01"),
+            (1, "", f"roio-cli: {self.bus}: not sent within 500 ms: nobody acknowledges, the bus is "
+                    "error-passive; 0 messages sent before\n"))
+        self.board.say("together")
+        ask = subprocess.Popen([CLI, "ask", "--timeout", "3000", self.bus + "?mode=listen", "0.2", "01"],
+                               stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+        self.addCleanup(ask.kill)
+        self.send("--from", "0.2", "--count", "20", "--interval", "100", "local:robot", "0.10", "99")
+        out, err = ask.communicate(timeout=GUARD)
+        self.assertEqual((ask.returncode, out), (1, ""))
+        self.assertIn("not sent: the bridge only listens; 0 messages sent before", err)
 
     def test_many_are_counted_as_they_were(self):
         self.assertEqual(

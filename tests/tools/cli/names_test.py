@@ -232,7 +232,17 @@ class NamesTest(CliTest):
         rows = [json.loads(line) for line in out.splitlines()]
         self.assertEqual(
             [(row["from"], row["to"], row["message"], row["fields"]) for row in rows if row["type"] == "row"],
-            [("pc", "arm", "speed", "speed=-0.3 m/s  gear=high")])
+            [("pc", "arm", "speed", {"speed": -0.3, "gear": "high"})])
+
+    def test_gen_takes_places_and_the_robots_bus(self):
+        check = self.start("gen", "--check", "-v", "--count", "3")
+        self.assertEqual(check.stderr.readline(), "roio-cli: local:robot: listening\n")
+        dump = self.dump("-n", "1", "-x", "local:robot")
+        self.assertEqual(self.run_cli("gen", "--count", "3", "--id", "7", "--from", "arm", "--to", "pc")[0], 0)
+        self.assertTrue(dump.result()[1].startswith("arm    -> pc "))
+        self.assertEqual(check.communicate(timeout=GUARD)[0],
+                         "0.2 #7: 3 received, from number 0, 0 lost, 0 doubled, 0 out of order\n")
+        self.assertEqual(self.run_cli("gen", "--from", "hand")[0], 2)
 
     def test_ask_has_names(self):
         dump = self.dump("-n", "1", "to=arm")

@@ -125,6 +125,8 @@ class EndTest(TopTest):
         for what, end, status in (
                 ("q", lambda screen: screen.keys("q"), 0),
                 ("Ctrl-C", lambda screen: screen.keys("C-c"), 130),
+                # Of Ctrl-\, which the shell around it would not outlive.
+                ("SIGQUIT", lambda screen: os.kill(self.pid(screen), signal.SIGQUIT), 131),
                 ("SIGTERM", lambda screen: os.kill(self.pid(screen), signal.SIGTERM), 143),
                 ("SIGHUP", lambda screen: os.kill(self.pid(screen), signal.SIGHUP), 129)):
             with self.subTest(what):

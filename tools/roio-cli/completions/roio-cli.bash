@@ -67,7 +67,7 @@ _roio_cli_words() {
     send:-*) echo --robot --from --urgent --class --count --interval --timeout --wait --dec --help; return ;;
     ask:-*) echo --robot --from --urgent --class --timeout --json --dec --help; return ;;
     top:-*) echo --robot --bitrate --interval -n --json --help; return ;;
-    gen:-*) echo --check --load --rate --bitrate --size --from --to --urgent --id --seed --count --time -T --timeout --verbose --help; return ;;
+    gen:-*) echo --robot --check --load --rate --bitrate --size --from --to --urgent --id --seed --count --time -T --timeout --verbose --help; return ;;
     attach:-*) echo --verbose --help; return ;;
     dump:-*) echo --robot -x -n -T -t -b -c --log --json --csv --pcap --no-foreign --errors --verbose --help; return ;;
     record:-*) echo --robot -o --force --csv --pcap -n -T --no-foreign --errors -b --help; return ;;

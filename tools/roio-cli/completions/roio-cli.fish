@@ -174,6 +174,7 @@ complete -c roio-cli -n '__fish_seen_subcommand_from ask' -l robot -r -F -d 'Rob
 complete -c roio-cli -n '__fish_seen_subcommand_from dump' -l robot -r -F -d 'Robot file with the names'
 complete -c roio-cli -n '__fish_seen_subcommand_from record' -l robot -r -F -d 'Robot file with the names'
 complete -c roio-cli -n '__fish_seen_subcommand_from top' -l robot -r -F -d 'Robot file with the names'
+complete -c roio-cli -n '__fish_seen_subcommand_from gen' -l robot -r -F -d 'Robot file with the names'
 complete -c roio-cli -n '__fish_seen_subcommand_from dump' -s x -d 'Bytes in place of names'
 
 complete -c roio-cli -n 'set -l words (commandline -opc); test (count $words) = 2; and test $words[2] = help' -a 'send ask dump top record play gen buses hub attach bridge kind robot'

@@ -102,9 +102,37 @@ TEST_F(LoadMeterTest, ASilenceLongerThanItsMemoryIsIdle) {
   EXPECT_EQ(meter_.load().frames_per_s, 0);
 }
 
+TEST_F(LoadMeterTest, ABurstThatIsFollowedByALongSilenceIsThePeak) {
+  for (const auto silence : {milliseconds(1500), milliseconds(1700), milliseconds(5000)}) {
+    meter_ = {};
+    meter_.set_bitrate(500'000);
+    run(seconds(2), 500'000, 100, 0.0001);
+    const Timestamp end = now_ + milliseconds(900);
+    for (; now_ < end; now_ += microseconds(200)) {
+      meter_.add(now_, 100);
+    }
+    now_ += silence;
+    meter_.advance(now_);
+    EXPECT_NEAR(*meter_.load().peak_share, 0.9, 0.01) << silence.count();
+    EXPECT_LT(*meter_.load().share, 0.91) << silence.count();
+  }
+}
+
+TEST_F(LoadMeterTest, AnotherBitRateBeginsAnew) {
+  meter_.set_bitrate(1'000'000);
+  run(seconds(2), 1'000'000, 100, 0.9);
+  meter_.set_bitrate(1'000'000);
+  EXPECT_NEAR(*meter_.load().peak_share, 0.9, 0.001);
+  meter_.set_bitrate(125'000);
+  EXPECT_EQ(*meter_.load().peak_share, 0);
+  run(seconds(2), 125'000, 100, 0.5);
+  EXPECT_NEAR(*meter_.load().peak_share, 0.5, 0.01);
+}
+
 TEST_F(LoadMeterTest, AClockThatIsSetBackOrForthIsFollowed) {
   meter_.set_bitrate(500'000);
-  for (const auto jump : {-std::chrono::hours(1), std::chrono::hours(2)}) {
+  for (const Timeout jump : {Timeout(-std::chrono::hours(1)), Timeout(std::chrono::hours(2)),
+                             Timeout(-milliseconds(1000)), Timeout(-milliseconds(300))}) {
     run(seconds(2), 500'000, 100, 0.5);
     now_ += jump;
     meter_.advance(now_);

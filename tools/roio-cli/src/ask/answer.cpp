@@ -6,6 +6,14 @@
 #include "listen/filter_words.hpp"
 
 namespace roio::cli {
+namespace {
+
+// Stamps are another clock's, such as a bridge's, which is not exactly ours. The bus is opened for
+// sending alone, and lets in nothing before its filters are set, just before the question: so
+// little is old.
+constexpr Timeout stamp_margin = std::chrono::milliseconds(50);
+
+}  // namespace
 
 std::vector<SocketCanFilter> answer_filters(const Message& question) {
   const Address asked = question.header.destination;
@@ -17,7 +25,7 @@ std::vector<SocketCanFilter> answer_filters(const Message& question) {
 
 bool is_answer(const Received& received, const Message& question, Timestamp asked) {
   Message message{};
-  if (received.time < asked || to_message(received.frame, message) != Status::ok) {
+  if (received.time + stamp_margin < asked || to_message(received.frame, message) != Status::ok) {
     return false;
   }
   const Address of = question.header.destination;

@@ -36,6 +36,13 @@ bool send_question(const AskOptions& options, Bus& bus) {
   return result == Result::ok;
 }
 
+// What looks like an answer is none to a question that never went out. A bridge may hand on what it
+// received before it tells that it has sent: then that is waited for.
+bool is_sent(Bus& bus) {
+  wait_for_outcomes(bus);
+  return !has_given_up(bus);
+}
+
 std::optional<Received> wait_for_answer(const AskOptions& options, Bus& bus, Timestamp asked,
                                         Clock::time_point end) {
   std::array<Received, batch_size> batch;
@@ -43,7 +50,7 @@ std::optional<Received> wait_for_answer(const AskOptions& options, Bus& bus, Tim
     const Transfer transfer = bus.receive(batch, std::max<Timeout>(end - Clock::now(), no_wait));
     for (const Received& received : std::span(batch).first(transfer.count)) {
       if (is_answer(received, options.message, asked)) {
-        return received;
+        return is_sent(bus) && Interrupt::signal() == 0 ? std::optional(received) : std::nullopt;
       }
     }
     if (transfer.count == 0 || Interrupt::signal() != 0) {
@@ -52,9 +59,13 @@ std::optional<Received> wait_for_answer(const AskOptions& options, Bus& bus, Tim
   }
 }
 
-int no_answer(const AskOptions& options, const Bus& bus) {
+int no_answer(const AskOptions& options, Bus& bus) {
+  const bool sent = is_sent(bus);
   if (const int signal = Interrupt::signal()) {
     return exit_signal + signal;
+  }
+  if (!sent) {
+    throw Failure(why_not_sent(bus, options.timeout, 0));
   }
   const Address asked = options.message.header.destination;
   note(bus.name() + ": no answer from " + labels_of(options.robot)->address(asked) + " within " +

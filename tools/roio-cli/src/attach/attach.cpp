@@ -12,6 +12,7 @@
 #include "attach/claim.hpp"
 #include "attach/forward.hpp"
 #include "attach/ring_watch.hpp"
+#include "listen/bus_watch.hpp"
 #include "program/exit_status.hpp"
 #include "program/interrupt.hpp"
 #include "program/output.hpp"
@@ -38,6 +39,12 @@ std::unique_ptr<Bus> open_bus(const std::string& text) {
   }
 }
 
+/// It hands back each frame once, which is no ring, but looks like one.
+bool is_looped_back(Bus& bus) {
+  const Bridge* const bridge = bridge_of(bus);
+  return bridge != nullptr && bridge->info().mode == BridgeMode::loopback;
+}
+
 /// A bridge goes by the name of its port.
 std::string short_name(Bus& bus) {
   const Bridge* const bridge = bridge_of(bus);
@@ -62,23 +69,14 @@ void refuse_one_bus(const AttachOptions& options) {
   }
 }
 
-/// Says when a bus goes and comes back.
-class Watch {
- public:
-  explicit Watch(const NamedBus& bus) : bus_(bus) {}
-
-  void look() {
-    const BusState state = bus_.bus.state();
-    if (state != state_) {
-      note(bus_.name + ": bus is " + to_string(state));
-      state_ = state;
-    }
-  }
-
- private:
-  const NamedBus& bus_;
-  BusState state_ = BusState::active;
-};
+/// Says when a bus goes and comes back. What it cannot hand on stands in the report.
+BusWatch watch_of(const NamedBus& bus) {
+  return {bus.bus, [&bus](const BusNews& news) {
+            if (news.kind == BusNews::Kind::state) {
+              note(bus.name + ": " + to_text(news));
+            }
+          }};
+}
 
 class Attachment {
  public:
@@ -101,8 +99,8 @@ class Attachment {
 
  private:
   void wait_for_the_end() {
-    Watch first(first_);
-    Watch second(second_);
+    BusWatch first = watch_of(first_);
+    BusWatch second = watch_of(second_);
     Clock::time_point next_report = Clock::now() + report_every;
     while (!up_.failed() && !down_.failed() &&
            Interrupt::sleep_until(Clock::now() + look_around_every)) {
@@ -121,7 +119,7 @@ class Attachment {
   }
 
   void look_for_ring(std::size_t from, std::span<const Frame> frames) {
-    if (!ring_watch_.pass(from, frames, Clock::now())) {
+    if (may_be_ring_ && !ring_watch_.pass(from, frames, Clock::now())) {
       throw Failure(first_.name + " and " + second_.name +
                     ": frames go round: something else joins the two as well; ended, as nothing "
                     "else would end it");
@@ -131,6 +129,7 @@ class Attachment {
   NamedBus first_;
   NamedBus second_;
   bool verbose_;
+  bool may_be_ring_ = !is_looped_back(first_.bus) && !is_looped_back(second_.bus);
   RingWatch ring_watch_;
   Forwarder up_{first_, second_, [this](auto frames) { look_for_ring(0, frames); }};
   Forwarder down_{second_, first_, [this](auto frames) { look_for_ring(1, frames); }};

@@ -8,8 +8,6 @@
 namespace roio::cli {
 namespace {
 
-constexpr std::size_t slot_count = 4096;
-
 std::uint64_t content_of(const Frame& frame) {
   std::array<char, 5 + max_data_length> bytes{};
   const std::uint32_t id = tagged_id(frame);
@@ -24,44 +22,56 @@ std::uint64_t content_of(const Frame& frame) {
 
 }  // namespace
 
-RingWatch::RingWatch() : sent_to_{Memory(slot_count), Memory(slot_count)} {}
+RoundCount::RoundCount(Clock::duration turnaround, std::uint64_t storm_frames, std::size_t contents)
+    : turnaround_(turnaround),
+      storm_frames_(storm_frames),
+      sent_to_{Memory(contents), Memory(contents)} {}
 
-bool RingWatch::pass(std::size_t from, std::span<const Frame> frames, Clock::time_point now) {
-  const std::lock_guard lock(mutex_);
+void RoundCount::pass(std::size_t from, std::uint64_t content, Clock::time_point now) {
   if (now - second_begins_ > std::chrono::seconds(1)) {
     second_begins_ = now;
     frames_ = 0;
     gone_round_ = 0;
   }
-  for (const Frame& frame : frames) {
-    const std::uint64_t content = content_of(frame);
-    const std::uint32_t rounds = rounds_of(sent_to_.at(from), content, now);
-    remember(sent_to_.at(1 - from), content, rounds, now);
-    ++frames_;
-    gone_round_ += rounds >= storm_rounds ? 1 : 0;
-  }
-  // Nine of ten, so that what others say meanwhile hides nothing.
-  return gone_round_ < storm_frames || gone_round_ * 10 < frames_ * 9;
+  const std::uint32_t rounds = rounds_of(sent_to_.at(from), content, now);
+  remember(sent_to_.at(1 - from), content, rounds, now);
+  ++frames_;
+  gone_round_ += rounds >= storm_rounds ? 1 : 0;
 }
 
-std::uint32_t RingWatch::rounds_of(Memory& sent_to_it, std::uint64_t content,
-                                   Clock::time_point now) {
-  Slot& slot = sent_to_it[content % slot_count];
-  if (slot.content != content || slot.count == 0 || now - slot.time > memory) {
+// Nine of ten, so that what others say meanwhile hides nothing.
+bool RoundCount::is_storm() const {
+  return gone_round_ >= storm_frames_ && gone_round_ * 10 >= frames_ * 9;
+}
+
+std::uint32_t RoundCount::rounds_of(Memory& sent_to_it, std::uint64_t content,
+                                    Clock::time_point now) const {
+  Slot& slot = sent_to_it[content % sent_to_it.size()];
+  if (slot.content != content || slot.count == 0 || now - slot.time > turnaround_) {
     return 0;
   }
   --slot.count;
   return slot.rounds + 1;
 }
 
-void RingWatch::remember(Memory& sent_to_it, std::uint64_t content, std::uint32_t rounds,
-                         Clock::time_point now) {
-  Slot& slot = sent_to_it[content % slot_count];
-  const bool is_same = slot.content == content && slot.count > 0 && now - slot.time <= memory;
+void RoundCount::remember(Memory& sent_to_it, std::uint64_t content, std::uint32_t rounds,
+                          Clock::time_point now) const {
+  Slot& slot = sent_to_it[content % sent_to_it.size()];
+  const bool is_same = slot.content == content && slot.count > 0 && now - slot.time <= turnaround_;
   slot.rounds = is_same ? std::max(slot.rounds, rounds) : rounds;
   slot.count = is_same ? slot.count + 1 : 1;
   slot.content = content;
   slot.time = now;
+}
+
+bool RingWatch::pass(std::size_t from, std::span<const Frame> frames, Clock::time_point now) {
+  const std::lock_guard lock(mutex_);
+  for (const Frame& frame : frames) {
+    const std::uint64_t content = content_of(frame);
+    quick_.pass(from, content, now);
+    flood_.pass(from, content, now);
+  }
+  return !quick_.is_storm() && !flood_.is_storm();
 }
 
 }  // namespace roio::cli

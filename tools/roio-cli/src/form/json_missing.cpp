@@ -34,7 +34,7 @@ void append_json(Buffer& /*out*/, const BusReport& /*report*/) {
   refuse_json();
 }
 
-void append_json(Buffer& /*out*/, const Snapshot& /*snapshot*/, const Labels& /*labels*/) {
+void append_json(Buffer& /*out*/, const Snapshot& /*snapshot*/, const Robot* /*robot*/) {
   refuse_json();
 }
 

@@ -38,9 +38,11 @@ void Sequence::begin(std::uint32_t number) {
   seen_.set(number % window);
   counts_.last = number;
   span_ = 1;
+  run_ = 0;
 }
 
 void Sequence::go_on(std::uint32_t number) {
+  run_ = 0;
   const std::uint32_t step = number - counts_.last;
   counts_.lost += step - 1;
   span_ += step;
@@ -56,23 +58,40 @@ void Sequence::go_on(std::uint32_t number) {
 }
 
 void Sequence::look_back(std::uint32_t number, std::uint32_t back) {
-  const bool is_far = back >= window;
-  if (is_far && number < window) {
-    ++counts_.restarts;
-    begin(number);
+  if (back >= window) {
+    look_far_back(number);
     return;
   }
-  if (!is_far && seen_.test(number % window)) {
+  run_ = 0;
+  if (seen_.test(number % window)) {
     ++counts_.doubled;
     return;
   }
   ++counts_.out_of_order;
-  if (!is_far) {
-    seen_.set(number % window);
-  }
+  seen_.set(number % window);
   // What came before the first one was never missed.
   if (back < span_ && counts_.lost > 0) {
     --counts_.lost;
+  }
+}
+
+// Nobody knows any more whether it had come. Until some in a row say that the generator began anew
+// they are late.
+void Sequence::look_far_back(std::uint32_t number) {
+  ++counts_.out_of_order;
+  if (number >= window) {
+    run_ = 0;
+    return;
+  }
+  run_ = run_ > 0 && number == run_next_ ? run_ + 1 : 1;
+  run_next_ = number + 1;
+  if (run_ == restart_run) {
+    counts_.out_of_order -= restart_run;
+    ++counts_.restarts;
+    begin(number - (restart_run - 1));
+    while (counts_.last != number) {
+      go_on(counts_.last + 1);
+    }
   }
 }
 

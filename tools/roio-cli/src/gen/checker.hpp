@@ -22,7 +22,7 @@ struct SequenceCounts {
   std::uint32_t first = 0;  ///< The number that was the first to come.
   std::uint32_t last = 0;   ///< The highest so far.
   std::uint64_t received = 0;
-  std::uint64_t lost = 0;          ///< Numbers left out, and not come since.
+  std::uint64_t lost = 0;          ///< Numbers left out, and not come since within the window.
   std::uint64_t doubled = 0;       ///< Numbers that had come already.
   std::uint64_t out_of_order = 0;  ///< Numbers that came after higher ones.
   std::uint64_t restarts = 0;      ///< Times that it went back so far that it began anew.
@@ -32,8 +32,11 @@ struct SequenceCounts {
 class Sequence {
  public:
   /// How far back a number may lie and still be told as late or doubled. One that lies further back
-  /// is late, unless it is one of the first: then the generator began anew.
+  /// is late.
   static constexpr std::size_t window = 4096;
+  /// So many numbers, one after the other, that lie further back and are among the first `window`:
+  /// then the generator began anew. Fewer are stragglers.
+  static constexpr std::uint32_t restart_run = 3;
 
   void add(const Numbered& numbered);
   [[nodiscard]] const SequenceCounts& counts() const { return counts_; }
@@ -43,10 +46,13 @@ class Sequence {
   void begin(std::uint32_t number);
   void go_on(std::uint32_t number);
   void look_back(std::uint32_t number, std::uint32_t back);
+  void look_far_back(std::uint32_t number);
 
   SequenceCounts counts_;
-  std::bitset<window> seen_;  // of the numbers up to the highest, by number % window
-  std::uint64_t span_ = 0;    // numbers from the first to the highest, since it began (anew)
+  std::bitset<window> seen_;    // of the numbers up to the highest, by number % window
+  std::uint64_t span_ = 0;      // numbers from the first to the highest, since it began (anew)
+  std::uint32_t run_ = 0;       // numbers that may be those of a generator that began anew
+  std::uint32_t run_next_ = 0;  // the one that would go on with them
 };
 
 class Checker {

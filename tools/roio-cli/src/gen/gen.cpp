@@ -16,6 +16,7 @@
 #include "program/interrupt.hpp"
 #include "program/output.hpp"
 #include "send/outcome.hpp"
+#include "send/sender.hpp"
 
 namespace roio::cli {
 namespace {
@@ -29,6 +30,7 @@ class Generation {
   Generation(const GenOptions& options, Bus& bus)
       : options_(options),
         bus_(bus),
+        sender_(bus, options.timeout),
         bitrate_(BitrateSource(bus, options.bus, options.bitrate_bps).bps()),
         traffic_(options.traffic),
         start_(Clock::now()) {
@@ -46,15 +48,21 @@ class Generation {
     }
   }
 
-  [[nodiscard]] std::uint64_t sent() const { return sent_; }
+  /// Tells what was sent, and closes the bus. @throws Failure: some of it was not.
+  void end() {
+    wait_for_outcomes(bus_);  // the time that they took counts
+    note(report());
+    sender_.close();
+  }
 
+ private:
   [[nodiscard]] std::string report() const {
     const double s = std::max(std::chrono::duration<double>(Clock::now() - start_).count(), 1e-6);
     const TrafficOptions& traffic = options_.traffic;
-    std::string text =
-        fmt::format("{}: {} sent as {} #{} in {:.3f} s, {:.0f}/s", bus_.name(),
-                    count_of(sent_, "message"), traffic.source ? to_string(*traffic.source) : "any",
-                    traffic.id, s, static_cast<double>(sent_) / s);
+    std::string text = fmt::format("{}: {} sent as {} #{} in {:.3f} s, {:.0f}/s", bus_.name(),
+                                   count_of(sender_.sent(), "message"),
+                                   traffic.source ? to_string(*traffic.source) : "any", traffic.id,
+                                   s, static_cast<double>(sender_.sent()) / s);
     if (bitrate_) {
       constexpr double percent = 100;
       text += fmt::format(", load {:.1f} %", bits_ / s / *bitrate_ * percent);
@@ -62,7 +70,6 @@ class Generation {
     return text;
   }
 
- private:
   [[nodiscard]] std::uint32_t bitrate_or_refuse() const {
     if (!bitrate_) {
       throw UsageError("--load: the bit rate of " + bus_.name() +
@@ -71,7 +78,7 @@ class Generation {
     return *bitrate_;
   }
 
-  [[nodiscard]] bool has_all() const { return options_.count && sent_ >= *options_.count; }
+  [[nodiscard]] bool has_all() const { return options_.count && sender_.sent() >= *options_.count; }
   [[nodiscard]] bool is_over() const {
     return options_.time && Clock::now() >= start_ + *options_.time;
   }
@@ -86,7 +93,7 @@ class Generation {
   }
 
   std::span<const Frame> due() {
-    const std::uint64_t left = options_.count ? *options_.count - sent_ : batch_size;
+    const std::uint64_t left = options_.count ? *options_.count - sender_.sent() : batch_size;
     const Clock::time_point now = Clock::now();
     batch_.clear();
     while (batch_.size() < std::min<std::uint64_t>(left, batch_size) &&
@@ -101,32 +108,22 @@ class Generation {
 
   // @return false when a signal came first.
   bool send(std::span<const Frame> frames) {
-    while (!frames.empty()) {
-      const Transfer transfer = bus_.send(frames, options_.timeout);
-      sent_ += transfer.count;
-      for (const Frame& frame : frames.first(transfer.count)) {
-        bits_ += wire_bits(frame);
-      }
-      frames = frames.subspan(transfer.count);
-      if (Interrupt::signal() != 0 || transfer.result == Result::cancelled) {
-        return false;
-      }
-      const bool waited_in_vain = transfer.result != Result::ok && transfer.count == 0;
-      if (waited_in_vain || has_given_up(bus_)) {
-        throw Failure(why_not_sent(bus_, options_.timeout, sent_));
-      }
+    const std::uint64_t sent_before = sender_.sent();
+    const bool going = sender_.send(frames);
+    for (const Frame& frame : frames.first(sender_.sent() - sent_before)) {
+      bits_ += wire_bits(frame);
     }
-    return true;
+    return going;
   }
 
   const GenOptions& options_;
   Bus& bus_;
+  Sender sender_;
   std::optional<std::uint32_t> bitrate_;
   Traffic traffic_;
   Clock::time_point start_;
   std::optional<Pace> pace_;
   std::vector<Frame> batch_;
-  std::uint64_t sent_ = 0;
   double bits_ = 0;
 };
 
@@ -143,9 +140,7 @@ int gen(const GenOptions& options) {
     note(bus->name() + ": seed " + std::to_string(options.traffic.seed));
   }
   generation.run();
-  const std::string report = generation.report();
-  finish_sending(*bus, options.timeout, generation.sent());
-  note(report);
+  generation.end();
   return Interrupt::signal() != 0 ? exit_signal + Interrupt::signal() : exit_success;
 }
 

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "gen/numbered.hpp"
+#include "names/robot.hpp"
 #include "program/words.hpp"
 
 namespace roio::cli {
@@ -68,6 +69,7 @@ std::pair<std::uint8_t, std::uint8_t> parse_size(const std::string& text) {
 
 GenWords::GenWords(CLI::App& program)
     : app_(program.add_subcommand("gen", "Send numbered messages, or check them")),
+      robot_(*app_),
       check_(flag(*app_, "--check", "Receive them, and say what became of them")),
       load_(option(*app_, "--load", load_text_, "PERCENT", "Share of the bus: 80%")),
       rate_(option(*app_, "--rate", rate_text_, "N", "Messages a second")),
@@ -85,26 +87,28 @@ GenWords::GenWords(CLI::App& program)
       timeout_(option(*app_, "--timeout", timeout_text_, "MS",
                       "Longest wait of a message for the bus (default 1000)")),
       verbose_(flag(*app_, "-v,--verbose", "--check: tell on stderr when listening")) {
-  prepare(*app_, "gen [OPTIONS] BUS", examples);
+  prepare(*app_, "gen [OPTIONS] [BUS]", examples);
   without_type(app_->add_option("BUS", bus_, "can0, local:NAME or serial:DEVICE"));
 }
 
-std::string GenWords::parse_bus_word() const {
-  if (bus_.empty()) {
+std::string GenWords::parse_bus_word(const Robot* robot) const {
+  const std::string bus = bus_.empty() && robot != nullptr ? bus_of(*robot) : bus_;
+  if (bus.empty()) {
     refuse("gen", "expected BUS");
   }
-  return parse_bus(bus_);
+  return parse_bus(bus);
 }
 
 std::variant<GenOptions, CheckOptions> GenWords::parse() const {
   refuse_rest(*app_, "gen");
+  const auto robot = robot_.find();
   if (check_->count() > 0) {
-    return parse_check();
+    return parse_check(robot.get());
   }
-  return parse_gen();
+  return parse_gen(robot.get());
 }
 
-CheckOptions GenWords::parse_check() const {
+CheckOptions GenWords::parse_check(const Robot* robot) const {
   for (const CLI::Option* option :
        {load_, rate_, bitrate_, size_, from_, to_, urgent_, id_, seed_, timeout_}) {
     if (option->count() > 0) {
@@ -122,18 +126,18 @@ CheckOptions GenWords::parse_check() const {
     options.quiet_time = parse_ms("-T", quiet_text_, 1);
   }
   options.verbose = verbose_->count() > 0;
-  options.bus = parse_bus_word();
+  options.bus = parse_bus_word(robot);
   return options;
 }
 
-GenOptions GenWords::parse_gen() const {
+GenOptions GenWords::parse_gen(const Robot* robot) const {
   for (const CLI::Option* option : {quiet_, verbose_}) {
     if (option->count() > 0) {
       throw UsageError(option->get_name() + ": expected with --check alone");
     }
   }
   GenOptions options;
-  options.traffic = parse_traffic();
+  options.traffic = parse_traffic(robot);
   parse_speed(options);
   if (count_->count() > 0) {
     options.count = parse_number("--count", count_text_, 1, most);
@@ -142,7 +146,7 @@ GenOptions GenWords::parse_gen() const {
     options.time = parse_ms("--time", time_text_, 1);
   }
   options.timeout = parse_ms("--timeout", timeout_text_, 1);
-  options.bus = parse_bus_word();
+  options.bus = parse_bus_word(robot);
   return options;
 }
 
@@ -162,13 +166,13 @@ void GenWords::parse_speed(GenOptions& options) const {
   }
 }
 
-TrafficOptions GenWords::parse_traffic() const {
+TrafficOptions GenWords::parse_traffic(const Robot* robot) const {
   TrafficOptions traffic;
   if (from_text_ != "random") {
-    traffic.source = value_or_refuse(parse_source(from_text_), "--from: ");
+    traffic.source = parse_sender(robot, from_text_, "--from: ");
   }
   if (to_text_ != "random") {
-    traffic.destination = value_or_refuse(parse_address(to_text_), "--to: ");
+    traffic.destination = value_or_refuse(address_of(robot, to_text_), "--to: ");
   }
   traffic.priority = urgent_->count() > 0 ? Priority::urgent : Priority::normal;
   std::tie(traffic.shortest, traffic.longest) = parse_size(size_text_);

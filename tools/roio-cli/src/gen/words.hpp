@@ -9,6 +9,7 @@
 
 #include "gen/check.hpp"
 #include "gen/gen.hpp"
+#include "names/option.hpp"
 
 namespace roio::cli {
 
@@ -25,16 +26,17 @@ class GenWords {
   [[nodiscard]] std::variant<GenOptions, CheckOptions> parse() const;
 
  private:
-  [[nodiscard]] std::string parse_bus_word() const;
-  [[nodiscard]] GenOptions parse_gen() const;
-  [[nodiscard]] CheckOptions parse_check() const;
-  [[nodiscard]] TrafficOptions parse_traffic() const;
+  [[nodiscard]] std::string parse_bus_word(const Robot* robot) const;
+  [[nodiscard]] GenOptions parse_gen(const Robot* robot) const;
+  [[nodiscard]] CheckOptions parse_check(const Robot* robot) const;
+  [[nodiscard]] TrafficOptions parse_traffic(const Robot* robot) const;
   void parse_speed(GenOptions& options) const;
 
   std::string bus_, load_text_, rate_text_, bitrate_text_, size_text_ = "8";
   std::string from_text_ = "0.10", to_text_ = "30.254", id_text_, seed_text_;
   std::string count_text_, time_text_, quiet_text_, timeout_text_ = "1000";
   CLI::App* app_;
+  RobotOption robot_;
   CLI::Option* check_;
   CLI::Option* load_;
   CLI::Option* rate_;

@@ -127,7 +127,19 @@ bool Interrupt::wait(std::span<pollfd> fds, std::chrono::steady_clock::time_poin
   for (std::size_t i = 0; i < count; ++i) {
     fds[i].revents = ready > 0 ? all[i].revents : short{0};
   }
+  if (ready > 0 && all[count].revents != 0 && caught == 0) {
+    std::array<char, 64> bytes;  // of wake(); what is more is read the next time
+    [[maybe_unused]] const ssize_t read = ::read(wake_pipe[0], bytes.data(), bytes.size());
+  }
   return caught == 0;
+}
+
+void Interrupt::wake() noexcept {
+  const int saved_errno = errno;
+  const char byte = 0;
+  // A full pipe wakes as well.
+  [[maybe_unused]] const ssize_t written = ::write(wake_pipe[1], &byte, 1);
+  errno = saved_errno;
 }
 
 bool Interrupt::wait_readable(int fd) {

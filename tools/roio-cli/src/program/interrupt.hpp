@@ -39,6 +39,10 @@ class Interrupt {
   [[nodiscard]] static bool wait(std::span<pollfd> fds,
                                  std::chrono::steady_clock::time_point until);
 
+  /// Ends the wait() that is going on, or the next one: for another signal's handler, so that what
+  /// it has set is looked at also when it came just before the wait.
+  static void wake() noexcept;
+
   /// Waits without limit until fd can be read (or is at its end).
   /// @return false when a signal ended the wait.
   [[nodiscard]] static bool wait_readable(int fd);

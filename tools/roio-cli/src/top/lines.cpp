@@ -3,6 +3,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <roio/message.hpp>
+#include <roio/robot_json.hpp>
 #include <roio/text.hpp>
 
 #include "top/view.hpp"
@@ -63,22 +64,17 @@ Json bus_json(const Snapshot& snapshot) {
   return json;
 }
 
-/// What names add to a row: nothing where there are none.
-void add_names(Json& json, const Message& message, const Labels& labels) {
-  const Header& header = message.header;
-  for (const auto& [field, address] :
-       {std::pair{"from", header.source}, std::pair{"to", header.destination}}) {
-    if (std::string name = labels.address(address); name != to_string(address)) {
-      json[field] = std::move(name);
+/// What names add to a row, as in what `dump --json` writes: nothing where there are none.
+void add_names(Json& json, const Message& message, const Robot& robot) {
+  Json named = Json::parse(to_json(JsonMessage{message, true, std::nullopt}, robot));
+  for (const char* const key : {"from", "to", "message", "fields"}) {
+    if (const auto found = named.find(key); found != named.end()) {
+      json[key] = std::move(*found);
     }
-  }
-  if (MessageLabel label = labels.message(message); label.is_named) {
-    json["message"] = std::move(label.name);
-    json["fields"] = std::move(label.fields);
   }
 }
 
-Json row_json(const TrafficRow& row, const Labels& labels) {
+Json row_json(const TrafficRow& row, const Robot* robot) {
   Json json;
   json["type"] = "row";
   Message message{};
@@ -87,7 +83,9 @@ Json row_json(const TrafficRow& row, const Labels& labels) {
     json["destination"] = to_string(message.header.destination);
     json["priority"] = to_string(message.header.priority);
     json["class"] = to_string(message.header.message_class);
-    add_names(json, message, labels);
+    if (robot != nullptr) {
+      add_names(json, message, *robot);
+    }
   } else {
     json["id"] = row.last.id;
     json["extended"] = is_extended(row.last.kind);
@@ -112,10 +110,10 @@ Json row_json(const TrafficRow& row, const Labels& labels) {
 
 }  // namespace
 
-void append_json(Buffer& out, const Snapshot& snapshot, const Labels& labels) {
+void append_json(Buffer& out, const Snapshot& snapshot, const Robot* robot) {
   append_line(out, bus_json(snapshot));
   for (const TrafficRow& row : sorted(snapshot.rows, View{})) {
-    append_line(out, row_json(row, labels));
+    append_line(out, row_json(row, robot));
   }
 }
 

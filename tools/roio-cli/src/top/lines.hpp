@@ -2,6 +2,8 @@
 #ifndef ROIO_CLI_TOP_LINES_HPP
 #define ROIO_CLI_TOP_LINES_HPP
 
+#include <roio/robot.hpp>
+
 #include "form/frame_text.hpp"
 #include "top/snapshot.hpp"
 
@@ -9,7 +11,7 @@ namespace roio::cli {
 
 /// The rows by source, then destination.
 /// @throws UsageError: this roio-cli was built without JSON (json_missing.cpp).
-void append_json(Buffer& out, const Snapshot& snapshot, const Labels& labels);
+void append_json(Buffer& out, const Snapshot& snapshot, const Robot* robot);
 
 }  // namespace roio::cli
 

@@ -17,6 +17,14 @@ double seconds_since_start(Timestamp time, std::int64_t number) {
 
 }  // namespace
 
+// A share of another bit rate says nothing of this one.
+void LoadMeter::set_bitrate(std::optional<std::uint32_t> bitrate_bps) {
+  if (bitrate_bps_ && bitrate_bps && *bitrate_bps_ != *bitrate_bps) {
+    clear();
+  }
+  bitrate_bps_ = bitrate_bps;
+}
+
 void LoadMeter::add(Timestamp time, unsigned bits) {
   std::int64_t number = number_of(time);
   if (!newest_) {
@@ -41,9 +49,8 @@ void LoadMeter::add(Timestamp time, unsigned bits) {
 
 void LoadMeter::advance(Timestamp now) {
   const std::int64_t number = number_of(now);
-  // The clock was set back: nothing would ever be new again.
-  const bool went_back = newest_ && number < *newest_ - bins_a_second;
-  if (!newest_ || went_back) {
+  // The clock was set back: nothing would be new again for as long as that.
+  if (!newest_ || number <= *newest_ - open_bins) {
     start(number);
   }
   reach(number);
@@ -58,17 +65,18 @@ void LoadMeter::start(std::int64_t number) {
 }
 
 void LoadMeter::reach(std::int64_t number) {
-  if (number > *newest_ + static_cast<std::int64_t>(bins_.size())) {
+  // What had come before a long silence counts to the end; after that all is empty.
+  const std::int64_t last_that_counts = *newest_ + static_cast<std::int64_t>(bins_.size());
+  while (*newest_ < std::min(number, last_that_counts)) {
+    bin(*newest_ + 1) = {};
+    complete(*newest_ + 1 - open_bins);
+    ++*newest_;
+  }
+  if (*newest_ < number) {
     bins_ = {};
     second_ = {};
     complete_ = bins_a_second;
     newest_ = number;
-    return;
-  }
-  while (*newest_ < number) {
-    bin(*newest_ + 1) = {};
-    complete(*newest_ + 1 - open_bins);
-    ++*newest_;
   }
 }
 

@@ -25,8 +25,8 @@ class LoadMeter {
  public:
   static constexpr std::chrono::milliseconds bin_time{100};
 
-  /// Of the bus, when it is known. What is measured from now on is in its terms.
-  void set_bitrate(std::optional<std::uint32_t> bitrate_bps) { bitrate_bps_ = bitrate_bps; }
+  /// Of the bus, when it is known. With another one it begins anew, without the peak.
+  void set_bitrate(std::optional<std::uint32_t> bitrate_bps);
   [[nodiscard]] std::optional<std::uint32_t> bitrate() const { return bitrate_bps_; }
 
   /// @param time when the frame was on the bus. A frame that comes later than others by more than

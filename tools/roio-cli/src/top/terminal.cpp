@@ -10,6 +10,7 @@
 #include <cerrno>
 #include <cstdlib>
 #include <string_view>
+#include <utility>
 
 #include "program/exit_status.hpp"
 #include "program/interrupt.hpp"
@@ -41,6 +42,7 @@ extern "C" void on_terminal_signal(int number) {
     resized_or_continued = true;
     continued = continued || number == SIGCONT;
   }
+  Interrupt::wake();
 }
 
 void handle(int number, void (*handler)(int)) {
@@ -48,6 +50,13 @@ void handle(int number, void (*handler)(int)) {
   action.sa_handler = handler;
   sigemptyset(&action.sa_mask);
   sigaction(number, &action, nullptr);  // no SA_RESTART: a wait is to end by it
+}
+
+// As if nobody had caught Ctrl-Z: who has no shell to go on from is not stopped, then.
+void stop() {
+  handle(SIGTSTP, SIG_DFL);
+  ::raise(SIGTSTP);
+  handle(SIGTSTP, on_terminal_signal);
 }
 
 bool cannot_be_drawn_on() {
@@ -69,6 +78,7 @@ Terminal::Terminal() {
   }
   has_keys_ = ::tcgetattr(STDIN_FILENO, &before_) == 0;
   Interrupt::also(SIGHUP);
+  Interrupt::also(SIGQUIT);
   for (const int number : {SIGWINCH, SIGTSTP, SIGCONT}) {
     handle(number, on_terminal_signal);
   }
@@ -95,9 +105,13 @@ void Terminal::enter() {
   }
   shown_.clear();
   pending_ = enter_text;
+  entered_ = true;
 }
 
 void Terminal::leave() {
+  if (!std::exchange(entered_, false)) {
+    return;
+  }
   // The rest of a screen is left out; CAN ends what it may have broken off.
   pending_ = pending_.empty() ? "" : "\030";
   pending_ += leave_text;
@@ -174,10 +188,11 @@ std::optional<std::string> Terminal::read() {
 bool Terminal::changed() {
   if (stop_asked.exchange(false)) {
     leave();
-    ::kill(::getpid(), SIGSTOP);
+    stop();
     continued = true;
   }
-  if (continued.exchange(false)) {
+  // What has come meanwhile may end the program: then the terminal stays as it is.
+  if (continued.exchange(false) && Interrupt::signal() == 0) {
     enter();
     resized_or_continued = true;
   }

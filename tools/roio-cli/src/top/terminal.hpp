@@ -55,6 +55,7 @@ class Terminal {
   Size shown_size_{0, 0};
   std::string pending_;  // has not gone out yet
   bool gone_ = false;
+  bool entered_ = false;
 };
 
 }  // namespace roio::cli

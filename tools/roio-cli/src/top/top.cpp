@@ -51,12 +51,12 @@ class Face {
 
 class Lines final : public Face {
  public:
-  explicit Lines(const Labels& labels) : labels_(labels) {}
+  explicit Lines(const Robot* robot) : robot_(robot) {}
 
   [[nodiscard]] std::chrono::milliseconds interval() const override { return lines_interval; }
   [[nodiscard]] bool begins_at_once() const override { return false; }
   void show(TrafficWatch& watch) override {
-    append_json(out_, watch.snapshot(), labels_);
+    append_json(out_, watch.snapshot(), robot_);
     flush(out_);
   }
   [[nodiscard]] pollfd input() const override { return {-1, 0, 0}; }
@@ -69,7 +69,7 @@ class Lines final : public Face {
   [[nodiscard]] std::optional<int> end() const override { return std::nullopt; }
 
  private:
-  const Labels& labels_;
+  const Robot* robot_;
   Buffer out_;
 };
 
@@ -150,7 +150,7 @@ class Screen final : public Face {
 
 std::unique_ptr<Face> make_face(const TopOptions& options, const Labels& labels) {
   if (options.json || !output_is_terminal()) {
-    return std::make_unique<Lines>(labels);
+    return std::make_unique<Lines>(options.robot.get());
   }
   return std::make_unique<Screen>(labels);
 }

@@ -19,11 +19,16 @@ constexpr std::size_t many = batch_size / 4;
 
 TrafficWatch::TrafficWatch(Bus& bus, const std::string& url,
                            std::optional<std::uint32_t> bitrate_bps, const Labels& labels)
-    : bus_(bus), bitrate_(bus, url, bitrate_bps), table_(labels), batch_(batch_size) {
+    : bus_(bus),
+      is_local_(bus.name().starts_with("local:")),
+      bitrate_(bus, url, bitrate_bps),
+      table_(labels),
+      batch_(batch_size) {
   table_.meter().set_bitrate(bitrate_.bps());
 }
 
 TrafficWatch::Taken TrafficWatch::take() {
+  hub_watch_.look(bus_.state(), HubWatch::Clock::now());
   std::size_t taken = 0;
   for (int i = 0; i < max_batches; ++i) {
     const Transfer transfer = bus_.receive(batch_, no_wait);
@@ -41,12 +46,20 @@ TrafficWatch::Taken TrafficWatch::take() {
   return Taken::many;
 }
 
+Statistics TrafficWatch::statistics() const {
+  Statistics statistics = bus_.statistics();
+  if (is_local_) {
+    statistics.outages = hub_watch_.outages();
+  }
+  return statistics;
+}
+
 Snapshot TrafficWatch::snapshot() {
   Snapshot snapshot;
   snapshot.time = std::chrono::system_clock::now();
   table_.meter().set_bitrate(bitrate_.bps());
   table_.tick(snapshot.time);
-  const Statistics now = bus_.statistics();
+  const Statistics now = statistics();
   snapshot.bus = bus_.name();
   snapshot.state = bus_.state();
   snapshot.bitrate_bps = table_.meter().bitrate();
@@ -65,7 +78,7 @@ Snapshot TrafficWatch::snapshot() {
 
 void TrafficWatch::clear() {
   table_.clear();
-  cleared_ = bus_.statistics();
+  cleared_ = statistics();
 }
 
 }  // namespace roio::cli

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "program/bitrate.hpp"
+#include "top/hub_watch.hpp"
 #include "top/snapshot.hpp"
 
 namespace roio::cli {
@@ -35,8 +36,12 @@ class TrafficWatch {
   void clear();
 
  private:
+  [[nodiscard]] Statistics statistics() const;
+
   Bus& bus_;
+  bool is_local_;
   BitrateSource bitrate_;
+  HubWatch hub_watch_;
   TrafficTable table_;
   std::vector<Received> batch_;
   Statistics cleared_;  // what had been counted then
