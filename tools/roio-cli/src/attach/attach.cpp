@@ -15,6 +15,7 @@
 #include "listen/bus_watch.hpp"
 #include "program/exit_status.hpp"
 #include "program/interrupt.hpp"
+#include "program/one_bus.hpp"
 #include "program/output.hpp"
 
 namespace roio::cli {
@@ -62,9 +63,7 @@ std::unique_ptr<Claim> claim_interface(const BusUrl& one, const BusUrl& other) {
 }
 
 void refuse_one_bus(const AttachOptions& options) {
-  const BusUrl first = *parse_bus_url(options.first);
-  const BusUrl second = *parse_bus_url(options.second);
-  if (first.kind == second.kind && first.target == second.target) {
+  if (is_one_bus(options.first, options.second)) {
     throw UsageError(options.first + " and " + options.second + " are one bus; expected two");
   }
 }

@@ -167,8 +167,8 @@ void append_error(Buffer& out, const Frame& frame, Gap gap, const Labels& labels
 
 }  // namespace
 
-void append_frame(Buffer& out, const Frame& frame, Colour colour, Gap gap, const Labels* named) {
-  const Labels& labels = named != nullptr ? *named : numeric_labels();
+void append_frame(Buffer& out, const Frame& frame, Colour colour, Gap gap, const Labels* names) {
+  const Labels& labels = names != nullptr ? *names : numeric_labels();
   Message message{};
   const Status status = to_message(frame, message);
   if (status == Status::ok) {

@@ -40,9 +40,9 @@ enum class Colour : std::uint8_t {
 };
 
 /// Appends the line without its end. Never allocates for a buffer that has room.
-/// @param labels what addresses and messages are called; null: by their numbers.
+/// @param names what addresses and messages are called; null: by their numbers.
 void append_frame(Buffer& out, const Frame& frame, Colour colour, Gap gap = Gap::wide,
-                  const Labels* labels = nullptr);
+                  const Labels* names = nullptr);
 
 /// Whether a frame is a Roio message; the others are foreign, or error reports.
 bool is_roio(const Frame& frame) noexcept;

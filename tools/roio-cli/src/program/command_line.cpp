@@ -1,8 +1,11 @@
 #include "program/command_line.hpp"
 
 #include <CLI/CLI.hpp>
+#include <optional>
 #include <roio/version.hpp>
 #include <string_view>
+#include <utility>
+#include <variant>
 #include <vector>
 
 #include "ask/words.hpp"
@@ -90,6 +93,29 @@ const CLI::App& last_command(const CLI::App& app) {
   throw UsageError(name + ": expected a value after it");
 }
 
+/// Of a command with several forms, which ask for different things, the one that was meant.
+template <typename... Forms>
+Command as_command(std::variant<Forms...> forms) {
+  return std::visit([](auto options) { return Command(std::move(options)); }, std::move(forms));
+}
+template <typename Options>
+Command as_command(Options options) {
+  return Command(std::move(options));
+}
+
+/// What the words of the command that was given ask for; none: no command was.
+template <typename... Words>
+std::optional<Command> parse_given(const Words&... all) {
+  std::optional<Command> command;
+  const auto parse_if_given = [&command](const auto& words) {
+    if (words.parsed()) {
+      command = as_command(words.parse());
+    }
+  };
+  (parse_if_given(all), ...);
+  return command;
+}
+
 }  // namespace
 
 Command parse_command_line(int argc, const char* const* argv) {
@@ -136,45 +162,14 @@ Command parse_command_line(int argc, const char* const* argv) {
   }
   const bool is_alone = app.get_subcommands().empty();
   refuse_rest(app, is_alone ? "" : last_command(app).get_name(), is_alone ? commands : nullptr);
-  if (send_words.parsed()) {
-    return send_words.parse();
-  }
-  if (ask_words.parsed()) {
-    return ask_words.parse();
-  }
-  if (dump_words.parsed()) {
-    return dump_words.parse();
-  }
-  if (top_words.parsed()) {
-    return top_words.parse();
-  }
-  if (record_words.parsed()) {
-    return record_words.parse();
-  }
-  if (play_words.parsed()) {
-    return play_words.parse();
-  }
-  if (gen_words.parsed()) {
-    return std::visit([](auto options) { return Command(std::move(options)); }, gen_words.parse());
-  }
   if (buses_app.parsed()) {
     refuse_rest(buses_app, "buses");
     return BusesOptions{buses_json->count() > 0};
   }
-  if (hub_words.parsed()) {
-    return hub_words.parse();
-  }
-  if (attach_words.parsed()) {
-    return attach_words.parse();
-  }
-  if (bridge_words.parsed()) {
-    return bridge_words.parse();
-  }
-  if (kind_words.parsed()) {
-    return kind_words.parse();
-  }
-  if (robot_words.parsed()) {
-    return robot_words.parse();
+  if (auto command =
+          parse_given(send_words, ask_words, dump_words, top_words, record_words, play_words,
+                      gen_words, hub_words, attach_words, bridge_words, kind_words, robot_words)) {
+    return std::move(*command);
   }
   refuse("", std::string("expected a command: ") + commands);
 }
