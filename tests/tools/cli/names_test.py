@@ -250,8 +250,8 @@ class NamesTest(CliTest):
         self.assertEqual(dump.result()[1], "pc     -> arm     normal  refusals\n")
         self.send("--from", "arm", "pc", "refusals", "count=258")
         self.assertEqual(ask.communicate(timeout=GUARD)[0], "arm    -> pc      normal  refusals  count=258\n")
-        self.assertEqual(self.run_cli("ask", "--timeout", "1", "arm", "refusals")[2],
-                         "roio-cli: local:robot: no answer from arm within 1 ms: nobody else is on the bus\n")
+        self.assertRegex(self.run_cli("ask", "--timeout", "1", "arm", "refusals")[2],
+                         "^roio-cli: local:robot: no answer from arm within 1 ms")
 
     def test_lines_of_json_have_names(self):
         dump = self.dump("--robot", "none", "-n", "3", "local:robot")
