@@ -24,7 +24,9 @@ foreach(header IN LISTS core_headers)
 endforeach()
 
 if(NOT ROIO_BUILD_JSON)
-  set(headers_left_out PATTERN roio/json.hpp EXCLUDE PATTERN roio/kind.hpp EXCLUDE PATTERN roio/robot.hpp EXCLUDE)
+  foreach(header json kind robot robot_json)
+    list(APPEND headers_left_out PATTERN roio/${header}.hpp EXCLUDE)
+  endforeach()
 endif()
 install(DIRECTORY libroio/core/include/ libroio/host/include/ TYPE INCLUDE
         FILES_MATCHING PATTERN *.hpp ${headers_left_out})
