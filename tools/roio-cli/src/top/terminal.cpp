@@ -55,7 +55,7 @@ void handle(int number, void (*handler)(int)) {
 // As if nobody had caught Ctrl-Z: who has no shell to go on from is not stopped, then.
 void stop() {
   handle(SIGTSTP, SIG_DFL);
-  ::raise(SIGTSTP);
+  static_cast<void>(::raise(SIGTSTP));
   handle(SIGTSTP, on_terminal_signal);
 }
 
