@@ -11,7 +11,6 @@
 #include <cerrno>
 #include <cstdint>
 #include <ctime>
-#include <limits>
 #include <optional>
 #include <system_error>
 #include <vector>
@@ -39,40 +38,45 @@ extern "C" void on_signal(int number) {
   if (opening) {
     ::_exit(exit_signal + number);
   }
-  const char byte = 0;
-  // A full pipe has woken the reader already.
-  [[maybe_unused]] const ssize_t written = ::write(wake_pipe[1], &byte, 1);
+  Interrupt::wake();
   if (Bus* bus = watched) {
     bus->cancel();
   }
   errno = saved_errno;
 }
 
-/// For poll(): rounded up, so that a wait does not spin at its end.
-int poll_ms(std::chrono::steady_clock::time_point until) {
+/// ppoll() on these and on what wakes, for at most so long (none: without limit).
+void poll_for(std::span<pollfd> fds, std::optional<std::chrono::nanoseconds> timeout) {
+  std::vector<pollfd> all(fds.begin(), fds.end());
+  all.push_back({wake_pipe[0], POLLIN, 0});
   const auto left =
-      std::chrono::ceil<std::chrono::milliseconds>(until - std::chrono::steady_clock::now());
-  constexpr std::int64_t longest = std::numeric_limits<int>::max();
-  return static_cast<int>(std::clamp<std::int64_t>(left.count(), 0, longest));
-}
-
-// Waits for a signal, for one of the descriptors (-1: none), or for the time to pass.
-enum class Woken { signal, readable, timeout };
-Woken wait_for(std::span<const int> descriptors, std::optional<std::chrono::nanoseconds> timeout) {
-  std::vector<pollfd> fds{{wake_pipe[0], POLLIN, 0}};
-  for (const int fd : descriptors) {
-    fds.push_back({fd, POLLIN, 0});
-  }
-  const auto left = timeout.value_or(std::chrono::nanoseconds(0));
+      std::max(timeout.value_or(std::chrono::nanoseconds(0)), std::chrono::nanoseconds(0));
   const auto seconds = std::chrono::duration_cast<std::chrono::seconds>(left);
   const timespec until{static_cast<std::time_t>(seconds.count()),
                        static_cast<long>((left - seconds).count())};
-  const int ready = ::ppoll(fds.data(), fds.size(), timeout ? &until : nullptr, nullptr);
+  const int ready = ::ppoll(all.data(), all.size(), timeout ? &until : nullptr, nullptr);
+  for (std::size_t i = 0; i < fds.size(); ++i) {
+    fds[i].revents = ready > 0 ? all[i].revents : short{0};
+  }
+  if (ready > 0 && all.back().revents != 0 && caught == 0) {
+    std::array<char, 64> bytes;  // of wake(); what is more is read the next time
+    [[maybe_unused]] const ssize_t read = ::read(wake_pipe[0], bytes.data(), bytes.size());
+  }
+}
+
+// Waits for a signal, for one of the descriptors, or for the time to pass.
+enum class Woken { signal, readable, timeout };
+Woken wait_for(std::span<const int> descriptors, std::optional<std::chrono::nanoseconds> timeout) {
+  std::vector<pollfd> fds;
+  for (const int fd : descriptors) {
+    fds.push_back({fd, POLLIN, 0});
+  }
+  poll_for(fds, timeout);
   if (caught != 0) {
     return Woken::signal;
   }
-  const bool readable = ready > 0 && std::any_of(fds.begin() + 1, fds.end(),
-                                                 [](const pollfd& fd) { return fd.revents != 0; });
+  const bool readable =
+      std::any_of(fds.begin(), fds.end(), [](const pollfd& fd) { return fd.revents != 0; });
   return readable ? Woken::readable : Woken::timeout;
 }
 
@@ -119,18 +123,7 @@ void Interrupt::also(int number) {
 }
 
 bool Interrupt::wait(std::span<pollfd> fds, std::chrono::steady_clock::time_point until) {
-  std::array<pollfd, max_fds + 1> all{};
-  const std::size_t count = std::min(fds.size(), max_fds);
-  std::copy_n(fds.begin(), count, all.begin());
-  all[count] = {wake_pipe[0], POLLIN, 0};
-  const int ready = ::poll(all.data(), count + 1, poll_ms(until));
-  for (std::size_t i = 0; i < count; ++i) {
-    fds[i].revents = ready > 0 ? all[i].revents : short{0};
-  }
-  if (ready > 0 && all[count].revents != 0 && caught == 0) {
-    std::array<char, 64> bytes;  // of wake(); what is more is read the next time
-    [[maybe_unused]] const ssize_t read = ::read(wake_pipe[0], bytes.data(), bytes.size());
-  }
+  poll_for(fds, until - std::chrono::steady_clock::now());
   return caught == 0;
 }
 
@@ -151,7 +144,7 @@ bool Interrupt::wait_readable(int fd) {
 }
 
 bool Interrupt::wait_readable(std::span<const int> fds, std::chrono::nanoseconds timeout) {
-  return wait_for(fds, std::max(timeout, std::chrono::nanoseconds(0))) == Woken::readable;
+  return wait_for(fds, timeout) == Woken::readable;
 }
 
 std::unique_ptr<Bus> open_until_signal(const std::string& url, const OpenOptions& options) {

@@ -33,9 +33,8 @@ class Interrupt {
   static void also(int number);
 
   /// Waits as poll() does, at most until `until`; another signal's handler ends the wait, too.
-  /// @param fds at most max_fds; their revents are set, or 0.
+  /// @param fds their revents are set, or 0.
   /// @return false when a signal that ends the command ended the wait.
-  static constexpr std::size_t max_fds = 7;
   [[nodiscard]] static bool wait(std::span<pollfd> fds,
                                  std::chrono::steady_clock::time_point until);
 
