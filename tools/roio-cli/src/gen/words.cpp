@@ -91,14 +91,6 @@ GenWords::GenWords(CLI::App& program)
   without_type(app_->add_option("BUS", bus_, "can0, local:NAME or serial:DEVICE"));
 }
 
-std::string GenWords::parse_bus_word(const Robot* robot) const {
-  const std::string bus = bus_.empty() && robot != nullptr ? bus_of(*robot) : bus_;
-  if (bus.empty()) {
-    refuse("gen", "expected BUS");
-  }
-  return parse_bus(bus);
-}
-
 std::variant<GenOptions, CheckOptions> GenWords::parse() const {
   refuse_rest(*app_, "gen");
   const auto robot = robot_.find();
@@ -126,7 +118,7 @@ CheckOptions GenWords::parse_check(const Robot* robot) const {
     options.quiet_time = parse_ms("-T", quiet_text_, 1);
   }
   options.verbose = verbose_->count() > 0;
-  options.bus = parse_bus_word(robot);
+  options.bus = parse_bus_or_robots(robot, bus_, "gen");
   return options;
 }
 
@@ -146,7 +138,7 @@ GenOptions GenWords::parse_gen(const Robot* robot) const {
     options.time = parse_ms("--time", time_text_, 1);
   }
   options.timeout = parse_ms("--timeout", timeout_text_, 1);
-  options.bus = parse_bus_word(robot);
+  options.bus = parse_bus_or_robots(robot, bus_, "gen");
   return options;
 }
 

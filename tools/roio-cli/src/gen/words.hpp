@@ -26,7 +26,6 @@ class GenWords {
   [[nodiscard]] std::variant<GenOptions, CheckOptions> parse() const;
 
  private:
-  [[nodiscard]] std::string parse_bus_word(const Robot* robot) const;
   [[nodiscard]] GenOptions parse_gen(const Robot* robot) const;
   [[nodiscard]] CheckOptions parse_check(const Robot* robot) const;
   [[nodiscard]] TrafficOptions parse_traffic(const Robot* robot) const;

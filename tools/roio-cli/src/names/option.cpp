@@ -16,6 +16,15 @@ std::shared_ptr<const Robot> RobotOption::find() const {
   return find_robot(option_->count() > 0 ? std::optional(text_) : std::nullopt);
 }
 
+std::string parse_bus_or_robots(const Robot* robot, const std::string& text,
+                                const std::string& command) {
+  const std::string bus = text.empty() && robot != nullptr ? bus_of(*robot) : text;
+  if (bus.empty()) {
+    refuse(command, "expected BUS");
+  }
+  return parse_bus(bus);
+}
+
 Address parse_destination(const Robot* robot, const std::string& text) {
   return value_or_refuse(address_of(robot, text));
 }

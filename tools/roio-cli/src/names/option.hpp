@@ -25,6 +25,12 @@ class RobotOption {
   CLI::Option* option_;
 };
 
+/// BUS, which may be left out where the robot names one.
+/// @param robot null: there is none. @param text empty: it is left out.
+/// @throws UsageError: there is none; what is wrong with it.
+std::string parse_bus_or_robots(const Robot* robot, const std::string& text,
+                                const std::string& command);
+
 /// The address of a destination: SUBNET.NODE, SUBNET.* or a place of the robot's.
 /// @param robot null: there is none. @throws UsageError
 Address parse_destination(const Robot* robot, const std::string& text);

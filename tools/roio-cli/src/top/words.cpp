@@ -2,7 +2,6 @@
 
 #include <limits>
 
-#include "names/robot.hpp"
 #include "program/words.hpp"
 
 namespace roio::cli {
@@ -54,12 +53,7 @@ TopOptions TopWords::parse() const {
   }
   options.json = json_->count() > 0;
   options.robot = robot_.find();
-  const bool is_left_out = bus_.empty() && options.robot;
-  const std::string bus = is_left_out ? bus_of(*options.robot) : bus_;
-  if (bus.empty()) {
-    refuse("top", "expected BUS");
-  }
-  options.bus = parse_bus(bus);
+  options.bus = parse_bus_or_robots(options.robot.get(), bus_, "top");
   return options;
 }
 
