@@ -3,13 +3,6 @@
 #include <utility>
 
 namespace roio::cli {
-namespace {
-
-// A local bus without a hub for longer than this is worth a word.
-constexpr Timeout hub_change_time = std::chrono::seconds(2);
-
-}  // namespace
-
 BusWatch::BusWatch(const Bus& bus, Tell tell)
     : bus_(bus), tell_(std::move(tell)), is_local_(bus.name().starts_with("local:")) {}
 
@@ -18,7 +11,8 @@ void BusWatch::look() {
     tell_fd_frames();
   }
   const BusState state = bus_.state();
-  if (is_local_ && is_between_hubs(state)) {
+  hub_watch_.look(state, HubWatch::Clock::now());
+  if (is_local_ && hub_watch_.is_between_hubs()) {
     return;
   }
   const std::uint64_t outages = bus_.statistics().outages;
@@ -37,15 +31,6 @@ void BusWatch::tell_fd_frames() {
     tell_({BusNews::Kind::not_shown, seen - told_fd_frames_, {}});
     told_fd_frames_ = seen;
   }
-}
-
-// On a local bus another process becomes the hub within moments, and nothing is lost by it.
-bool BusWatch::is_between_hubs(BusState state) {
-  if (state != BusState::absent) {
-    last_present_ = std::chrono::steady_clock::now();
-    return false;
-  }
-  return std::chrono::steady_clock::now() - last_present_ < hub_change_time;
 }
 
 void BusWatch::announce(BusState state) {

@@ -2,12 +2,12 @@
 #ifndef ROIO_CLI_BUS_WATCH_HPP
 #define ROIO_CLI_BUS_WATCH_HPP
 
-#include <chrono>
 #include <cstdint>
 #include <functional>
 #include <roio/bus.hpp>
 
 #include "form/record_format.hpp"
+#include "listen/hub_watch.hpp"
 
 namespace roio::cli {
 
@@ -26,7 +26,6 @@ class BusWatch {
   [[nodiscard]] std::uint64_t fd_frames() const { return told_fd_frames_; }
 
  private:
-  bool is_between_hubs(BusState state);
   void announce(BusState state);
 
   const Bus& bus_;
@@ -35,7 +34,7 @@ class BusWatch {
   BusState state_ = BusState::active;
   std::uint64_t outages_ = 0;
   std::uint64_t told_fd_frames_ = 0;
-  std::chrono::steady_clock::time_point last_present_ = std::chrono::steady_clock::now();
+  HubWatch hub_watch_;
 };
 
 }  // namespace roio::cli

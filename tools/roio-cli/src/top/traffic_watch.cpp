@@ -9,6 +9,8 @@ namespace {
 
 constexpr std::size_t batch_size = 256;
 
+constexpr HubWatch::Clock::duration look_around_every = std::chrono::milliseconds(200);
+
 // So many batches at a time, so that keys are heard and the screen is drawn in a flood, too.
 constexpr int max_batches = 64;
 
@@ -28,7 +30,7 @@ TrafficWatch::TrafficWatch(Bus& bus, const std::string& url,
 }
 
 TrafficWatch::Taken TrafficWatch::take() {
-  hub_watch_.look(bus_.state(), HubWatch::Clock::now());
+  look_at_hub();
   std::size_t taken = 0;
   for (int i = 0; i < max_batches; ++i) {
     const Transfer transfer = bus_.receive(batch_, no_wait);
@@ -44,6 +46,15 @@ TrafficWatch::Taken TrafficWatch::take() {
     }
   }
   return Taken::many;
+}
+
+// Asks the kernel, so not for every batch.
+void TrafficWatch::look_at_hub() {
+  const HubWatch::Clock::time_point now = HubWatch::Clock::now();
+  if (is_local_ && now >= next_look_) {
+    hub_watch_.look(bus_.state(), now);
+    next_look_ = now + look_around_every;
+  }
 }
 
 Statistics TrafficWatch::statistics() const {

@@ -9,8 +9,8 @@
 #include <string>
 #include <vector>
 
+#include "listen/hub_watch.hpp"
 #include "program/bitrate.hpp"
-#include "top/hub_watch.hpp"
 #include "top/snapshot.hpp"
 
 namespace roio::cli {
@@ -36,12 +36,14 @@ class TrafficWatch {
   void clear();
 
  private:
+  void look_at_hub();
   [[nodiscard]] Statistics statistics() const;
 
   Bus& bus_;
   bool is_local_;
   BitrateSource bitrate_;
   HubWatch hub_watch_;
+  HubWatch::Clock::time_point next_look_;  // at once
   TrafficTable table_;
   std::vector<Received> batch_;
   Statistics cleared_;  // what had been counted then

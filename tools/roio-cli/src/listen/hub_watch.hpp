@@ -1,5 +1,6 @@
-/// HubWatch: how often a local bus was gone. Pure: what it is and the time go in. Another process
-/// becomes the hub within moments, and nothing is lost by it: that is no outage.
+/// HubWatch: whether a local bus is gone, and how often it was. Pure: what it is and the time go
+/// in. Another process becomes the hub within moments, and nothing is lost by it: that is no
+/// outage.
 #ifndef ROIO_CLI_HUB_WATCH_HPP
 #define ROIO_CLI_HUB_WATCH_HPP
 
@@ -19,6 +20,8 @@ class HubWatch {
 
   void look(BusState state, Clock::time_point now);
   [[nodiscard]] std::uint64_t outages() const { return outages_; }
+  /// It is absent, and not for long enough to be out.
+  [[nodiscard]] bool is_between_hubs() const { return absent_since_ && !is_counted_; }
 
  private:
   std::optional<Clock::time_point> absent_since_;

@@ -1,5 +1,5 @@
 // HubWatch: which absences of a local bus are outages.
-#include "top/hub_watch.hpp"
+#include "listen/hub_watch.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "top/hub_watch.hpp"
+#include "listen/hub_watch.hpp"
 
 namespace roio::cli {
 
